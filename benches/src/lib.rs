@@ -1,0 +1,1 @@
+//! Data and baselines that the benchmarks share.

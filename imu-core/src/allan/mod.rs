@@ -1,0 +1,1 @@
+//! Allan and Hadamard variance, streaming, over octaves of the averaging time τ.

@@ -1,0 +1,135 @@
+//! `Real`: the scalar of every formula here, `f32` or `f64`.
+//!
+//! A sealed trait of our own instead of nalgebra's `RealField`: it offers only operations that
+//! have one definition on every target (IEEE 754 arithmetic, comparison, and the pure-Rust `libm`
+//! crate), so the same input gives the same bits on a laptop and on a Cortex-M, whatever features
+//! cargo unifies elsewhere in a build.
+//!
+//! ```
+//! use imu_core::Real;
+//! fn density<T: Real>(sd: T, dt: T) -> T {
+//!     sd * dt.sqrt()
+//! }
+//! assert_eq!(density(0.5_f32, 4.0), 1.0);
+//! ```
+
+use core::fmt::{Debug, Display};
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// A scalar with one definition everywhere: `f32` or `f64`.
+///
+/// Not promised to be the same bits everywhere: the payload of a NaN, flush-to-zero modes, x87.
+pub trait Real:
+    sealed::Sealed
+    + Copy
+    + Debug
+    + Display
+    + Default
+    + PartialEq
+    + PartialOrd
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// The largest finite value.
+    const MAX: Self;
+    /// The distance from 1 to the next larger value.
+    const EPSILON: Self;
+
+    /// The nearest value to `x`.
+    fn from_f64(x: f64) -> Self;
+    /// The nearest value to the integer `n`.
+    fn from_u32(n: u32) -> Self;
+    /// The same number in double precision (exact).
+    fn to_f64(self) -> f64;
+    /// |x|: clears the sign bit, so also of a NaN.
+    fn abs(self) -> Self;
+    /// Square root, correctly rounded; NaN below zero.
+    fn sqrt(self) -> Self;
+    /// Sine and cosine of an angle in radians, within 1 unit in the last place (`libm`).
+    fn sin_cos(self) -> (Self, Self);
+    /// Neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+}
+
+macro_rules! real {
+    ($T:ident, $sqrt:path, $sincos:path) => {
+        impl Real for $T {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const MAX: Self = $T::MAX;
+            const EPSILON: Self = $T::EPSILON;
+
+            #[inline(always)]
+            fn from_f64(x: f64) -> Self {
+                x as $T
+            }
+            #[inline(always)]
+            fn from_u32(n: u32) -> Self {
+                n as $T
+            }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $T::abs(self)
+            }
+            #[inline]
+            fn sqrt(self) -> Self {
+                $sqrt(self)
+            }
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                $sincos(self)
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                $T::is_finite(self)
+            }
+        }
+    };
+}
+
+real!(f32, libm::sqrtf, libm::sincosf);
+real!(f64, libm::sqrt, libm::sincos);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn square_root_is_the_correctly_rounded_one() {
+        for bits in (0..0x7f80_0000_u32).step_by(10_007) {
+            let x = f32::from_bits(bits);
+            assert_eq!(Real::sqrt(x).to_bits(), x.sqrt().to_bits());
+        }
+    }
+
+    #[test]
+    fn absolute_value_clears_the_sign_of_everything() {
+        assert_eq!(Real::abs(-0.0_f32).to_bits(), 0);
+        assert!(Real::abs(f64::NAN).is_nan());
+        assert_eq!(Real::abs(f64::NEG_INFINITY), f64::INFINITY);
+    }
+}

@@ -1,0 +1,5 @@
+//! The desktop side of the project: recordings in, noise parameters and reports out.
+//!
+//! Data flows one way: [`recording`] → core → report. See `ARCHITECTURE.md` for the map.
+
+pub mod recording;

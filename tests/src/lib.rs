@@ -1,0 +1,1 @@
+//! Published data and helpers that the cross-crate tests share.
