@@ -2,4 +2,6 @@
 //!
 //! Data flows one way: [`recording`] → core → report. See `ARCHITECTURE.md` for the map.
 
+pub mod error;
+pub mod output;
 pub mod recording;

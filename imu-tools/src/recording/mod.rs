@@ -2,14 +2,48 @@
 //!
 //! A [`Source`] fills [`Block`]s with the samples of both sensors, in the order of the file, in SI
 //! units, stamped in integer nanoseconds. The two sensors of a block are independent: each has its
-//! own samples, rate and gaps.
+//! own samples, rate and gaps. A [`Sink`] takes blocks and writes a file.
+//!
+//! ```no_run
+//! use imu_tools::recording::{self, Block, ReadOptions, Sample};
+//!
+//! let folder = tempfile::tempdir().unwrap();
+//! let path = folder.path().join("imu.csv");
+//! let mut block = Block::default();
+//! for i in 0..3 {
+//!     let stamp_ns = i * 5_000_000;
+//!     block.gyroscope.push(Sample { stamp_ns, value: [0.1, 0.0, 0.0] });
+//!     block.accelerometer.push(Sample { stamp_ns, value: [0.0, 0.0, 9.81] });
+//! }
+//! let mut sink = recording::create(&path)?;
+//! sink.write_block(&block)?;
+//! sink.finish()?;
+//!
+//! let mut source = recording::open(&path, &ReadOptions::default())?;
+//! let mut read = Block::default();
+//! assert!(source.next_block(&mut read)?);
+//! assert_eq!(read, block);
+//! assert!(!source.next_block(&mut read)?);
+//! # Ok::<(), imu_tools::error::Error>(())
+//! ```
+
+mod timeline;
+mod units;
+
+use std::path::Path;
+
+pub use timeline::{Event, Gap, Summary, Timeline};
+pub use units::{ForceUnit, RateUnit, TimeUnit};
+
+use crate::error::Error;
 
 /// One reading of one three-axis sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Nanoseconds since the epoch of the recording's clock.
     pub stamp_ns: i64,
-    /// Angular rate in rad/s, or specific force in m/s², in sensor axes x, y, z.
+    /// Angular rate in rad/s, or specific force in m/s², in sensor axes x, y, z. Not finite where
+    /// the recording has a row or message but no number.
     pub value: [f64; 3],
 }
 
@@ -28,4 +62,94 @@ impl Block {
         self.gyroscope.clear();
         self.accelerometer.clear();
     }
+}
+
+/// Samples of a sensor in one block, at most: a block of both fits a second-level cache.
+pub const BLOCK_SAMPLES: usize = 4096;
+
+/// Something that a reader wants to tell its user.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Note {
+    /// What was found and taken for granted, such as the unit of time.
+    Info(String),
+    /// What is wrong with the recording although it could be read.
+    Warning(String),
+}
+
+/// A recording being read, front to back, once.
+pub trait Source: Send {
+    /// Clears `block` and fills it with the next samples, at most [`BLOCK_SAMPLES`] a sensor;
+    /// `false`, and an empty block, at the end.
+    ///
+    /// # Errors
+    /// When the file cannot be read or is not what it was taken for.
+    fn next_block(&mut self, block: &mut Block) -> Result<bool, Error>;
+
+    /// Where the gyroscope's samples come from: a topic, or the names of columns.
+    fn gyroscope(&self) -> &str;
+
+    /// Where the accelerometer's samples come from.
+    fn accelerometer(&self) -> &str;
+
+    /// Takes what there is to tell since the last call; complete once the end was reached.
+    fn take_notes(&mut self) -> Vec<Note>;
+
+    /// Bytes read so far.
+    fn bytes_read(&self) -> u64;
+
+    /// Bytes in all, where that is known (not of a pipe).
+    fn bytes_total(&self) -> Option<u64>;
+}
+
+/// A recording being written.
+pub trait Sink: Send {
+    /// Writes the samples of `block`. Two samples of one instant become one row or message;
+    /// within a block each sensor's stamps are expected in order.
+    ///
+    /// # Errors
+    /// When the disk is full, or a stamp does not fit the format.
+    fn write_block(&mut self, block: &Block) -> Result<(), Error>;
+
+    /// Completes the file and puts it in its place. A sink that is dropped instead leaves nothing.
+    ///
+    /// # Errors
+    /// When the disk is full.
+    fn finish(self: Box<Self>) -> Result<(), Error>;
+}
+
+/// How to read a recording.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReadOptions {
+    /// The Imu topic of a bag; `imu` and `/imu` are the same. `None` takes the only one.
+    pub topic: Option<String>,
+    /// Stamp samples with the time at which the bag recorded them, not with their header's.
+    pub bag_time: bool,
+    /// Columns of a CSV, such as `t,gx,gy,gz,ax,ay,az,-`. `None` finds them.
+    pub columns: Option<String>,
+    /// Unit of a CSV's angular rates. `None` finds it in the header, or takes rad/s.
+    pub gyro_unit: Option<RateUnit>,
+    /// Unit of a CSV's specific forces. `None` finds it in the header, or takes m/s².
+    pub accel_unit: Option<ForceUnit>,
+    /// Unit of a CSV's time. `None` finds it in the header or in the data.
+    pub time_unit: Option<TimeUnit>,
+}
+
+/// Opens the recording at `path` (`-` is a pipe), whatever its format.
+///
+/// # Errors
+/// When there is no such file, its format is unknown, or it holds no IMU.
+pub fn open(path: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Error> {
+    let _ = options;
+    Err(Error::data(format!("{} is no recording that can be read", path.display())))
+}
+
+/// Starts a recording at `path`: `.bag` or `.csv` by its name, `-` for a CSV on a pipe.
+///
+/// # Errors
+/// When the name has another ending, or the folder cannot be written.
+pub fn create(path: &Path) -> Result<Box<dyn Sink>, Error> {
+    Err(Error::usage(format!(
+        "cannot tell the format of {} from its name: end it with .bag or .csv",
+        path.display()
+    )))
 }
