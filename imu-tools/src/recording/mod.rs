@@ -4,11 +4,11 @@
 //! units, stamped in integer nanoseconds. The two sensors of a block are independent: each has its
 //! own samples, rate and gaps. A [`Sink`] takes blocks and writes a file.
 //!
-//! ```no_run
+//! ```
 //! use imu_tools::recording::{self, Block, ReadOptions, Sample};
 //!
 //! let folder = tempfile::tempdir().unwrap();
-//! let path = folder.path().join("imu.csv");
+//! let path = folder.path().join("imu.bag");
 //! let mut block = Block::default();
 //! for i in 0..3 {
 //!     let stamp_ns = i * 5_000_000;
@@ -27,6 +27,8 @@
 //! # Ok::<(), imu_tools::error::Error>(())
 //! ```
 
+pub mod bag;
+mod input;
 mod timeline;
 mod units;
 
@@ -36,6 +38,7 @@ pub use timeline::{Event, Gap, Summary, Timeline};
 pub use units::{ForceUnit, RateUnit, TimeUnit};
 
 use crate::error::Error;
+use input::Input;
 
 /// One reading of one three-axis sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,13 +137,18 @@ pub struct ReadOptions {
     pub time_unit: Option<TimeUnit>,
 }
 
-/// Opens the recording at `path` (`-` is a pipe), whatever its format.
+/// Opens the recording at `path` (`-` is a pipe), whatever its format: what it holds decides, not
+/// its name.
 ///
 /// # Errors
 /// When there is no such file, its format is unknown, or it holds no IMU.
 pub fn open(path: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Error> {
-    let _ = options;
-    Err(Error::data(format!("{} is no recording that can be read", path.display())))
+    let mut input = Input::open(path)?;
+    input.fill(bag::MAGIC.len())?;
+    if input.at_hand().is_empty() {
+        return Err(Error::data(format!("{} is empty", path.display())));
+    }
+    Ok(Box::new(bag::BagReader::open(input, options)?))
 }
 
 /// Starts a recording at `path`: `.bag` or `.csv` by its name, `-` for a CSV on a pipe.
@@ -148,8 +156,38 @@ pub fn open(path: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Error
 /// # Errors
 /// When the name has another ending, or the folder cannot be written.
 pub fn create(path: &Path) -> Result<Box<dyn Sink>, Error> {
-    Err(Error::usage(format!(
-        "cannot tell the format of {} from its name: end it with .bag or .csv",
-        path.display()
-    )))
+    match path.extension().and_then(|e| e.to_str()) {
+        Some("bag") => Ok(Box::new(bag::BagWriter::create(path)?)),
+        _ => Err(Error::usage(format!(
+            "cannot tell the format of {} from its name: end it with .bag or .csv",
+            path.display()
+        ))),
+    }
+}
+
+/// Walks both sensors of a block by time; samples of one instant come together.
+fn merge(
+    block: &Block,
+    mut row: impl FnMut(i64, Option<[f64; 3]>, Option<[f64; 3]>) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let (mut gyroscope, mut accelerometer) = (block.gyroscope.iter(), block.accelerometer.iter());
+    let (mut g, mut a) = (gyroscope.next(), accelerometer.next());
+    loop {
+        match (g, a) {
+            (None, None) => return Ok(()),
+            (Some(rate), Some(force)) if rate.stamp_ns == force.stamp_ns => {
+                row(rate.stamp_ns, Some(rate.value), Some(force.value))?;
+                (g, a) = (gyroscope.next(), accelerometer.next());
+            }
+            (Some(rate), other) if other.is_none_or(|force| rate.stamp_ns < force.stamp_ns) => {
+                row(rate.stamp_ns, Some(rate.value), None)?;
+                g = gyroscope.next();
+            }
+            (_, Some(force)) => {
+                row(force.stamp_ns, None, Some(force.value))?;
+                a = accelerometer.next();
+            }
+            (Some(_), None) => return Ok(()),
+        }
+    }
 }

@@ -1,0 +1,147 @@
+//! The message `sensor_msgs/Imu` as ROS 1 puts it on the wire.
+//!
+//! seq u32, stamp (seconds u32, nanoseconds u32), frame_id (length u32 and text), orientation
+//! x y z w, its covariance 3×3, angular velocity x y z, covariance, linear acceleration x y z,
+//! covariance: 37 doubles after the header, little-endian. A first covariance element of −1 says
+//! that the quantity is not given.
+
+/// Name of the type.
+pub const TYPE_NAME: &str = "sensor_msgs/Imu";
+
+/// Fingerprint of the definition, which ROS computes without comments and blanks.
+pub const MD5SUM: &str = "6a62c6daae103f4ff57a132d6f95cec2";
+
+/// Text of the definition with all that it includes: readers refuse a bag without.
+pub const DEFINITION: &str = include_str!("sensor_msgs_Imu.txt");
+
+/// Bytes of the header before the text of its frame.
+const HEADER: usize = 16;
+/// Bytes after the frame: 37 doubles.
+const BODY: usize = 37 * 8;
+/// Offsets in the body.
+const ORIENTATION_W: usize = 24;
+const ORIENTATION_COVARIANCE: usize = 32;
+const RATE: usize = 104;
+const RATE_COVARIANCE: usize = 128;
+const FORCE: usize = 200;
+const FORCE_COVARIANCE: usize = 224;
+
+/// What is wanted of a message.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImuMessage {
+    /// Stamp of the header: seconds and nanoseconds.
+    pub stamp: (u32, u32),
+    /// Angular rate, rad/s, where given.
+    pub rate: Option<[f64; 3]>,
+    /// Specific force, m/s², where given.
+    pub force: Option<[f64; 3]>,
+}
+
+/// The double at `offset`, the compiler sees that it is there.
+#[inline]
+fn double(body: &[u8; BODY], offset: usize) -> f64 {
+    let bytes = body.get(offset..offset + 8).and_then(|b| b.try_into().ok());
+    f64::from_le_bytes(bytes.unwrap_or([0; 8]))
+}
+
+#[inline]
+fn vector(body: &[u8; BODY], offset: usize) -> [f64; 3] {
+    [double(body, offset), double(body, offset + 8), double(body, offset + 16)]
+}
+
+impl ImuMessage {
+    /// Reads a message; `None` when `bytes` are not one.
+    #[inline]
+    pub fn parse(bytes: &[u8]) -> Option<Self> {
+        let (header, rest) = bytes.split_first_chunk::<HEADER>()?;
+        let word = |at: usize| header.get(at..at + 4).and_then(|b| b.try_into().ok());
+        let (sec, nsec) = (u32::from_le_bytes(word(4)?), u32::from_le_bytes(word(8)?));
+        let frame = u32::from_le_bytes(word(12)?) as usize;
+        let body: &[u8; BODY] = rest.get(frame..)?.try_into().ok()?;
+        let given = |value: usize, covariance: usize| {
+            (double(body, covariance) != -1.0).then(|| vector(body, value))
+        };
+        Some(Self {
+            stamp: (sec, nsec),
+            rate: given(RATE, RATE_COVARIANCE),
+            force: given(FORCE, FORCE_COVARIANCE),
+        })
+    }
+}
+
+/// A message in its wire form, of which only numbers change from one to the next.
+#[derive(Clone, Debug)]
+pub struct Template {
+    bytes: Vec<u8>,
+    body: usize,
+}
+
+impl Template {
+    /// A message of this frame, without orientation.
+    pub fn new(frame_id: &str) -> Self {
+        let mut bytes = vec![0; HEADER - 4];
+        super::record::push_prefixed(&mut bytes, frame_id.as_bytes());
+        let body = bytes.len();
+        bytes.resize(body + BODY, 0);
+        let mut template = Self { bytes, body };
+        template.put(ORIENTATION_W, 1.0);
+        template.put(ORIENTATION_COVARIANCE, -1.0);
+        template
+    }
+
+    fn put(&mut self, offset: usize, value: f64) {
+        let at = self.body + offset;
+        if let Some(bytes) = self.bytes.get_mut(at..at + 8) {
+            bytes.copy_from_slice(&value.to_le_bytes());
+        }
+    }
+
+    fn put_sensor(&mut self, value: Option<[f64; 3]>, at: usize, covariance: usize) {
+        let given = value.is_some();
+        for (axis, v) in value.unwrap_or_default().into_iter().enumerate() {
+            self.put(at + 8 * axis, v);
+        }
+        self.put(covariance, if given { 0.0 } else { -1.0 });
+    }
+
+    /// The wire form of `message`, as number `seq` of its topic.
+    pub fn fill(&mut self, seq: u32, message: &ImuMessage) -> &[u8] {
+        if let Some(header) = self.bytes.first_chunk_mut::<12>() {
+            header[..4].copy_from_slice(&seq.to_le_bytes());
+            header[4..8].copy_from_slice(&message.stamp.0.to_le_bytes());
+            header[8..].copy_from_slice(&message.stamp.1.to_le_bytes());
+        }
+        self.put_sensor(message.rate, RATE, RATE_COVARIANCE);
+        self.put_sensor(message.force, FORCE, FORCE_COVARIANCE);
+        &self.bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_are_read_back() {
+        let mut template = Template::new("imu");
+        for (rate, force) in [
+            (Some([1.0, -2.0, 1e-300]), Some([0.0, -0.0, 9.81])),
+            (Some([1.0, 2.0, 3.0]), None),
+            (None, Some([4.0, 5.0, 6.0])),
+        ] {
+            let message = ImuMessage { stamp: (1_700_000_000, 999_999_999), rate, force };
+            let bytes = template.fill(7, &message);
+            assert_eq!(bytes.len(), 315);
+            assert_eq!(ImuMessage::parse(bytes), Some(message));
+            for cut in 0..bytes.len() {
+                assert_eq!(ImuMessage::parse(&bytes[..cut]), None);
+            }
+        }
+    }
+
+    #[test]
+    fn definition_is_the_whole_text() {
+        assert_eq!(DEFINITION.len(), 2572);
+        assert!(!DEFINITION.contains('\r'));
+    }
+}
