@@ -1,0 +1,63 @@
+//! What the firmware images and the host both compute: one list of cases, one list of inputs.
+//!
+//! A case calls functions of `imu_core` on inputs made from integers and reports every result as a
+//! 64-bit word. The runner calls the same cases on the host: word for word, both must agree. A
+//! case may also have its work counted in instructions, or its stack measured; the host does that
+//! work too, so that both go through the same states, and reports no figure.
+#![no_std]
+#![forbid(unsafe_code)]
+
+use core::hint::black_box;
+use imu_core::Real;
+
+mod edf;
+pub mod inputs;
+mod scalar;
+
+/// Where a case leaves its results.
+pub trait Report {
+    /// A result that must be the same 64 bits on every target.
+    fn word(&mut self, bits: u64);
+    /// Does `work` once, and counts the instructions it takes, per one of the `calls` it makes.
+    fn instructions(&mut self, what: &'static str, calls: u32, work: &mut dyn FnMut());
+    /// Does `work` once, and measures how many bytes of stack it takes below its caller's.
+    fn stack(&mut self, what: &'static str, work: &mut dyn FnMut());
+    /// States how many bytes a value takes on this target.
+    fn state(&mut self, what: &'static str, bytes: usize);
+}
+
+impl dyn Report + '_ {
+    /// Reports the bits of a number; every NaN counts as the same.
+    pub fn real<T: Real>(&mut self, value: T) {
+        let value = value.to_f64();
+        self.word(if value == value { value.to_bits() } else { u64::MAX });
+    }
+
+    /// Reports a yes or a no.
+    pub fn flag(&mut self, value: bool) {
+        self.word(u64::from(value));
+    }
+}
+
+/// A named case.
+pub struct Case {
+    /// Its name: the first column of the table of ceilings.
+    pub name: &'static str,
+    /// Runs it.
+    pub run: fn(&mut dyn Report),
+}
+
+/// Every case, in the order in which they run.
+pub const CASES: &[Case] = &[
+    Case { name: "scalar f32", run: scalar::case::<f32> },
+    Case { name: "scalar f64", run: scalar::case::<f64> },
+    Case { name: "chi square", run: edf::chi_square },
+    Case { name: "edf", run: edf::degrees_of_freedom },
+];
+
+/// Does `work` `times` times and hides the results from the optimiser.
+fn repeat<R>(times: u32, mut work: impl FnMut() -> R) {
+    for _ in 0..times {
+        black_box(work());
+    }
+}

@@ -1,0 +1,81 @@
+//! Proves that `imu_core` does on a Cortex-M what it does on the host, at the price stated.
+//!
+//! Builds the images for Cortex-M4F and M0, which link only if no panic is reachable; runs them
+//! under QEMU; compares every result with the host's bit for bit, and every figure (instructions,
+//! stack, state, flash) with the table of ceilings. `README.md` beside this workspace says more.
+
+mod ceilings;
+mod host;
+mod images;
+mod lockfile;
+mod panics;
+mod qemu;
+mod toolchain;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// A result with an error in one sentence.
+type Result<T> = std::result::Result<T, String>;
+
+const USAGE: &str = "usage: tests/firmware/run [--bless]
+  --bless  write the figures measured now into tests/firmware/ceilings.csv";
+
+fn main() -> ExitCode {
+    let mut bless = false;
+    for argument in std::env::args().skip(1) {
+        match argument.as_str() {
+            "--bless" => bless = true,
+            "--help" | "-h" => {
+                println!("{USAGE}");
+                return ExitCode::SUCCESS;
+            }
+            _ => {
+                eprintln!("{USAGE}");
+                return ExitCode::from(2);
+            }
+        }
+    }
+    match check(bless) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("firmware: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Everything; true if all is as it should be.
+fn check(bless: bool) -> Result<bool> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let folder = folder.canonicalize().map_err(|e| format!("{}: {e}", folder.display()))?;
+    lockfile::same_versions(&folder.join("../../Cargo.lock"), &folder.join("Cargo.lock"))?;
+    let toolchain = toolchain::find()?;
+    qemu::find()?;
+    let target_dir = std::env::var_os("CARGO_TARGET_DIR")
+        .map_or_else(|| folder.join("target"), PathBuf::from)
+        .join("firmware");
+
+    let expected = host::run();
+    let mut good = true;
+    let mut figures = Vec::new();
+    for target in &images::TARGETS {
+        let built = images::build(&toolchain, target, &folder, &target_dir)?;
+        let report = qemu::run(target, &built.image("all"))?;
+        good &= host::compare(target.name, &expected, &report.words);
+        figures.extend(report.figures);
+        for name in images::SINGLE {
+            qemu::run(target, &built.image(name))?;
+            figures.push(ceilings::Figure {
+                target: target.name.into(),
+                case: (*name).into(),
+                what: "flash".into(),
+                unit: "bytes".into(),
+                value: images::flash_bytes(&built.image(name))? as f64,
+            });
+        }
+    }
+    good &= ceilings::check(&folder.join("ceilings.csv"), &figures, &toolchain.version, bless)?;
+    Ok(good)
+}
