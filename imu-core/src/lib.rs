@@ -4,6 +4,7 @@
 
 pub mod allan;
 mod error;
+pub mod noise;
 mod scalar;
 
 pub use error::Error;
