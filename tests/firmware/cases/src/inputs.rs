@@ -16,7 +16,7 @@ impl Integers {
 
     /// The next integer.
     #[inline]
-    pub fn next(&mut self) -> u32 {
+    pub fn integer(&mut self) -> u32 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 17;
         self.0 ^= self.0 << 5;
@@ -26,7 +26,7 @@ impl Integers {
     /// The next number in [−1, 1), a multiple of 2⁻²³: exact in `f32` and `f64`.
     #[inline]
     pub fn unit<T: Real>(&mut self) -> T {
-        let centred = i32::from_ne_bytes((self.next() >> 8).to_ne_bytes()) - (1 << 23);
+        let centred = i32::from_ne_bytes((self.integer() >> 8).to_ne_bytes()) - (1 << 23);
         T::from_f64(f64::from(centred)) * T::from_f64(1.0 / 8_388_608.0)
     }
 }

@@ -12,6 +12,7 @@ use imu_core::Real;
 
 mod edf;
 pub mod inputs;
+mod noise;
 mod scalar;
 
 /// Where a case leaves its results.
@@ -30,7 +31,7 @@ impl dyn Report + '_ {
     /// Reports the bits of a number; every NaN counts as the same.
     pub fn real<T: Real>(&mut self, value: T) {
         let value = value.to_f64();
-        self.word(if value == value { value.to_bits() } else { u64::MAX });
+        self.word(if value.is_nan() { u64::MAX } else { value.to_bits() });
     }
 
     /// Reports a yes or a no.
@@ -53,6 +54,10 @@ pub const CASES: &[Case] = &[
     Case { name: "scalar f64", run: scalar::case::<f64> },
     Case { name: "chi square", run: edf::chi_square },
     Case { name: "edf", run: edf::degrees_of_freedom },
+    Case { name: "noise f32", run: noise::case::<f32> },
+    Case { name: "noise f64", run: noise::case::<f64> },
+    Case { name: "noise steps f32", run: noise::absent_terms::<f32> },
+    Case { name: "noise steps f64", run: noise::absent_terms::<f64> },
 ];
 
 /// Does `work` `times` times and hides the results from the optimiser.

@@ -16,7 +16,7 @@ pub fn case<T: Real>(report: &mut dyn Report) {
         T::EPSILON,
         T::ONE / T::MAX,
         T::ONE / T::ZERO,
-        T::ZERO / T::ZERO,
+        T::from_f64(f64::NAN),
     ];
     for edge in edges {
         operations(report, black_box(edge));
@@ -27,7 +27,7 @@ pub fn case<T: Real>(report: &mut dyn Report) {
         for _ in 0..8 {
             operations(report, integers.unit::<T>() * scale);
         }
-        scale = scale * T::from_u32(10);
+        scale *= T::from_u32(10);
     }
     let x = T::from_f64(black_box(0.7));
     report.instructions("sqrt", 64, &mut || repeat(64, || Real::sqrt(black_box(x))));

@@ -60,7 +60,7 @@ pub fn check(path: &Path, figures: &[Figure], compiler: &str, bless: bool) -> Re
         let verdict = verdict(figure, row, figures, bless);
         good &= verdict.is_ok();
         println!(
-            "{:4} {:44} {:>11.1} {:12} {}",
+            "{:4} {:50} {:>11.1} {:12} {}",
             figure.target,
             format!("{}: {}", figure.case, figure.what),
             figure.value,
