@@ -2,10 +2,14 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+#[cfg(test)]
+extern crate std;
+
 pub mod allan;
 mod error;
 pub mod noise;
 mod scalar;
+pub mod trajectory;
 
 pub use error::Error;
 pub use nalgebra;
