@@ -13,6 +13,7 @@
 //! assert_eq!(density(0.5_f32, 4.0), 1.0);
 //! ```
 
+use crate::allan::{Total, TwoStage};
 use core::fmt::{Debug, Display};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -46,12 +47,17 @@ pub trait Real:
     + MulAssign
     + DivAssign
 {
+    /// A running total of many terms ≥ 0 that stays right over 10⁹ of them.
+    type Total: Total<Self>;
+
     /// 0.
     const ZERO: Self;
     /// 1.
     const ONE: Self;
     /// The largest finite value.
     const MAX: Self;
+    /// The largest value whose square may be summed 10⁹ times over without overflow.
+    const LIMIT: Self;
     /// The distance from 1 to the next larger value.
     const EPSILON: Self;
 
@@ -72,11 +78,14 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($T:ident, $sqrt:path, $sincos:path) => {
+    ($T:ident, $Total:ty, $limit:literal, $sqrt:path, $sincos:path) => {
         impl Real for $T {
+            type Total = $Total;
+
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const MAX: Self = $T::MAX;
+            const LIMIT: Self = $limit;
             const EPSILON: Self = $T::EPSILON;
 
             #[inline(always)]
@@ -111,8 +120,8 @@ macro_rules! real {
     };
 }
 
-real!(f32, libm::sqrtf, libm::sincosf);
-real!(f64, libm::sqrt, libm::sincos);
+real!(f32, TwoStage, 1e12, libm::sqrtf, libm::sincosf);
+real!(f64, f64, 1e100, libm::sqrt, libm::sincos);
 
 #[cfg(test)]
 mod tests {

@@ -1,4 +1,14 @@
-//! Allan and Hadamard variance, streaming, over octaves of the averaging time τ.
+//! Allan and Hadamard variance, streaming, over octaves of the averaging time τ; the noise that
+//! explains them.
+
+mod extend;
+mod ladder;
+mod reading;
+mod total;
+
+pub use ladder::{AllanLadder, HadamardLadder, Ladder};
+pub use reading::Octave;
+pub use total::{Total, TwoStage};
 
 mod chi_square;
 mod edf;
