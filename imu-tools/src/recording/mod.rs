@@ -28,6 +28,7 @@
 //! ```
 
 pub mod bag;
+pub mod csv;
 mod input;
 mod timeline;
 mod units;
@@ -144,11 +145,22 @@ pub struct ReadOptions {
 /// When there is no such file, its format is unknown, or it holds no IMU.
 pub fn open(path: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Error> {
     let mut input = Input::open(path)?;
-    input.fill(bag::MAGIC.len())?;
-    if input.at_hand().is_empty() {
+    input.fill(512)?;
+    let start = input.at_hand();
+    let start = start.get(..512).unwrap_or(start);
+    if start.is_empty() {
         return Err(Error::data(format!("{} is empty", path.display())));
     }
-    Ok(Box::new(bag::BagReader::open(input, options)?))
+    if start.starts_with(b"#ROSBAG") || path.extension().is_some_and(|e| e == "bag") {
+        return Ok(Box::new(bag::BagReader::open(input, options)?));
+    }
+    if start.contains(&0) {
+        return Err(Error::data(format!(
+            "{} is neither a ROS 1 bag nor a table of numbers in text",
+            path.display()
+        )));
+    }
+    Ok(Box::new(csv::CsvReader::open(input, options)?))
 }
 
 /// Starts a recording at `path`: `.bag` or `.csv` by its name, `-` for a CSV on a pipe.
@@ -158,6 +170,8 @@ pub fn open(path: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Error
 pub fn create(path: &Path) -> Result<Box<dyn Sink>, Error> {
     match path.extension().and_then(|e| e.to_str()) {
         Some("bag") => Ok(Box::new(bag::BagWriter::create(path)?)),
+        Some("csv") => Ok(Box::new(csv::CsvWriter::create(path)?)),
+        None if path == Path::new("-") => Ok(Box::new(csv::CsvWriter::create(path)?)),
         _ => Err(Error::usage(format!(
             "cannot tell the format of {} from its name: end it with .bag or .csv",
             path.display()

@@ -163,7 +163,7 @@ impl FromStr for ForceUnit {
 
     fn from_str(name: &str) -> Result<Self, String> {
         Ok(match plain(name).as_str() {
-            "m/s2" | "ms-2" | "m/sec2" | "m/s/s" | "mps2" | "mss" => Self::MPerS2,
+            "m/s2" | "ms-2" | "ms2" | "m/sec2" | "m/s/s" | "mps2" | "mss" => Self::MPerS2,
             "g" | "gn" | "g0" => Self::G,
             "mg" | "milli-g" | "millig" => Self::MilliG,
             _ => {

@@ -11,6 +11,7 @@
 mod imu_message;
 mod reader;
 mod record;
+mod repeat;
 mod topics;
 mod writer;
 

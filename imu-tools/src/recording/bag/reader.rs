@@ -4,6 +4,7 @@ use super::MAGIC;
 use super::imu_message::{ImuMessage, TYPE_NAME};
 use super::op;
 use super::record::{Header, prefixed};
+use super::repeat::Repeat;
 use super::topics::{Role, Topics};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
@@ -21,9 +22,8 @@ pub struct BagReader {
     /// The list of connections was read, so that no other topic will turn up.
     listed: bool,
     ended: bool,
-    messages: u64,
-    unstamped: u64,
-    malformed: u64,
+    repeat: Option<Repeat>,
+    taken: Taken,
     unknown: u64,
     notes: Vec<Note>,
 }
@@ -62,9 +62,8 @@ impl BagReader {
             index_pos: 0,
             listed: false,
             ended: false,
-            messages: 0,
-            unstamped: 0,
-            malformed: 0,
+            repeat: None,
+            taken: Taken::default(),
             unknown: 0,
             notes: Vec::new(),
         };
@@ -164,9 +163,12 @@ impl BagReader {
             (op::MESSAGE, Some(conn)) => {
                 if let Some(role) = self.topics.role(conn) {
                     if len > LARGEST_PIECE as u64 {
-                        self.malformed += 1;
+                        self.taken.malformed += 1;
                     } else if self.input.fill(len as usize)? {
-                        self.message(8 + header, data, time, role, block);
+                        let record = self.input.at_hand().get(..len as usize).unwrap_or_default();
+                        let payload = record.get(8 + header..).unwrap_or_default();
+                        self.taken.message(payload, time, self.bag_time, role, block);
+                        self.repeat = Repeat::of(record, header, role);
                         self.input.consume(len as usize);
                         return Ok(true);
                     } else {
@@ -195,28 +197,24 @@ impl BagReader {
         Ok(self.cut_off_if(!whole))
     }
 
-    /// Takes the message whose data is `data` bytes from `at` on.
-    #[inline]
-    fn message(&mut self, at: usize, data: usize, time: (u32, u32), role: Role, to: &mut Block) {
-        let bytes = self.input.at_hand().get(at..at + data).unwrap_or_default();
-        let Some(message) = ImuMessage::parse(bytes) else {
-            self.malformed += 1;
-            return;
-        };
-        self.messages += 1;
-        self.unstamped += u64::from(message.stamp == (0, 0));
-        let (sec, nsec) = if self.bag_time { time } else { message.stamp };
-        let stamp_ns = i64::from(sec) * 1_000_000_000 + i64::from(nsec);
-        if let Some(value) = message.rate
-            && role.gyroscope
-        {
-            to.gyroscope.push(Sample { stamp_ns, value });
+    /// Takes the records at hand that repeat the shape of the last message.
+    fn repeated(&mut self, block: &mut Block) {
+        let Some(repeat) = self.repeat else { return };
+        let mut bytes = self.input.at_hand();
+        let here = self.input.offset();
+        if here < self.chunk_end {
+            let inside = bytes.len().min((self.chunk_end - here) as usize);
+            bytes = bytes.get(..inside).unwrap_or_default();
         }
-        if let Some(value) = message.force
-            && role.accelerometer
+        let mut used = 0;
+        while has_room(block)
+            && let Some((time, payload)) = repeat.next(bytes)
         {
-            to.accelerometer.push(Sample { stamp_ns, value });
+            self.taken.message(payload, time, self.bag_time, repeat.role, block);
+            used += repeat.len;
+            bytes = bytes.get(repeat.len..).unwrap_or_default();
         }
+        self.input.consume(used);
     }
 
     /// Enters a chunk: its records come next.
@@ -305,24 +303,76 @@ impl BagReader {
 
     /// Says, once, what was strange about the messages.
     fn warn_of_messages(&mut self) {
-        let (malformed, unknown) = (self.malformed, self.unknown);
+        let Taken { messages, unstamped, malformed } = std::mem::take(&mut self.taken);
+        let unknown = std::mem::take(&mut self.unknown);
         if malformed > 0 {
-            self.warn(format!("has {malformed} messages that are no {}", TYPE_NAME));
+            self.warn(format!("has {malformed} messages that are no {TYPE_NAME}"));
         }
         if unknown > 0 {
             self.warn(format!("has {unknown} messages of topics that it does not name"));
         }
-        if self.messages > 1 && self.unstamped == self.messages && !self.bag_time {
+        if messages > 1 && unstamped == messages && !self.bag_time {
             self.warn("has no stamps in its messages: read it with --bag-time".into());
         }
-        (self.malformed, self.unknown, self.messages) = (0, 0, 0);
     }
+}
+
+/// What was taken so far.
+#[derive(Clone, Copy, Debug, Default)]
+struct Taken {
+    messages: u64,
+    /// Messages whose stamp is 0.
+    unstamped: u64,
+    /// Messages that cannot be read.
+    malformed: u64,
+}
+
+impl Taken {
+    /// Takes one message, recorded at `time`.
+    #[inline]
+    fn message(
+        &mut self,
+        payload: &[u8],
+        time: (u32, u32),
+        bag_time: bool,
+        role: Role,
+        to: &mut Block,
+    ) {
+        let Some(message) = ImuMessage::parse(payload) else {
+            self.malformed += 1;
+            return;
+        };
+        self.messages += 1;
+        self.unstamped += u64::from(message.stamp == (0, 0));
+        let (sec, nsec) = if bag_time { time } else { message.stamp };
+        let stamp_ns = i64::from(sec) * 1_000_000_000 + i64::from(nsec);
+        if let Some(value) = message.rate
+            && role.gyroscope
+        {
+            to.gyroscope.push(Sample { stamp_ns, value });
+        }
+        if let Some(value) = message.force
+            && role.accelerometer
+        {
+            to.accelerometer.push(Sample { stamp_ns, value });
+        }
+    }
+}
+
+/// Whether another message fits.
+#[inline]
+fn has_room(block: &Block) -> bool {
+    block.gyroscope.len() < BLOCK_SAMPLES && block.accelerometer.len() < BLOCK_SAMPLES
 }
 
 impl Source for BagReader {
     fn next_block(&mut self, block: &mut Block) -> Result<bool, Error> {
         block.clear();
-        while block.gyroscope.len() < BLOCK_SAMPLES && block.accelerometer.len() < BLOCK_SAMPLES {
+        loop {
+            self.repeated(block);
+            if !has_room(block) {
+                break;
+            }
             if !self.record(block)? {
                 if !self.topics.complete() {
                     return Err(self.topics.not_found(self.input.path()));

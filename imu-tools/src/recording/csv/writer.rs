@@ -1,0 +1,102 @@
+//! Writing a CSV: stamps in integer nanoseconds, values with the fewest digits that are read back
+//! as the same double.
+
+use std::path::Path;
+
+use crate::error::Error;
+use crate::output::Output;
+use crate::recording::{Block, Sink, merge};
+
+const HEADER: &str = "timestamp [ns],gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s],\
+                      accel_x [m/s^2],accel_y [m/s^2],accel_z [m/s^2]\n";
+
+/// Text is handed on when there is so much of it.
+const PIECE: usize = 256 * 1024;
+
+/// A CSV being written.
+pub struct CsvWriter {
+    output: Output,
+    text: Vec<u8>,
+}
+
+impl CsvWriter {
+    /// Starts the CSV that will stand at `path`; `-` is a pipe.
+    ///
+    /// # Errors
+    /// When the folder cannot be written.
+    pub fn create(path: &Path) -> Result<Self, Error> {
+        let mut text = Vec::with_capacity(PIECE + 1024);
+        text.extend_from_slice(HEADER.as_bytes());
+        Ok(Self { output: Output::create(path)?, text })
+    }
+
+    fn flush(&mut self) -> Result<(), Error> {
+        self.output.write(&self.text)?;
+        self.text.clear();
+        Ok(())
+    }
+}
+
+/// Appends three fields, empty ones where there is no sample.
+fn push_sensor(text: &mut Vec<u8>, value: Option<[f64; 3]>) {
+    match value {
+        None => text.extend_from_slice(b",,,"),
+        Some(value) => {
+            let mut digits = zmij::Buffer::new();
+            for v in value {
+                text.push(b',');
+                text.extend_from_slice(digits.format(v).as_bytes());
+            }
+        }
+    }
+}
+
+/// Appends a whole number.
+fn push_integer(text: &mut Vec<u8>, number: i64) {
+    let mut digits = [0; 20];
+    let mut left = number.unsigned_abs();
+    let mut start = digits.len();
+    for (at, digit) in digits.iter_mut().enumerate().rev() {
+        *digit = b'0' + (left % 10) as u8;
+        left /= 10;
+        start = at;
+        if left == 0 {
+            break;
+        }
+    }
+    if number < 0 {
+        text.push(b'-');
+    }
+    text.extend_from_slice(digits.get(start..).unwrap_or_default());
+}
+
+impl Sink for CsvWriter {
+    fn write_block(&mut self, block: &Block) -> Result<(), Error> {
+        merge(block, |stamp_ns, rate, force| {
+            push_integer(&mut self.text, stamp_ns);
+            push_sensor(&mut self.text, rate);
+            push_sensor(&mut self.text, force);
+            self.text.push(b'\n');
+            if self.text.len() < PIECE { Ok(()) } else { self.flush() }
+        })
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(), Error> {
+        self.flush()?;
+        self.output.finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integers_at_their_ends() {
+        for number in [0, 7, -7, 10, i64::MAX, i64::MIN, 1_700_000_000_000_000_000] {
+            let mut text = Vec::new();
+            push_integer(&mut text, number);
+            assert_eq!(String::from_utf8(text).unwrap(), number.to_string());
+        }
+    }
+}
