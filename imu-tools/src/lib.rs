@@ -2,6 +2,7 @@
 //!
 //! Data flows one way: [`recording`] → core → report. See `ARCHITECTURE.md` for the map.
 
+pub mod calibrate;
 pub mod error;
 pub mod output;
 pub mod recording;

@@ -1,0 +1,3 @@
+//! From samples to noise parameters.
+
+pub mod batch;
