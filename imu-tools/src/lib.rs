@@ -3,6 +3,8 @@
 //! Data flows one way: [`recording`] → core → report. See `ARCHITECTURE.md` for the map.
 
 pub mod calibrate;
+pub mod cli;
 pub mod error;
 pub mod output;
 pub mod recording;
+pub mod scene;

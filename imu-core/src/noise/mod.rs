@@ -10,7 +10,7 @@
 //! ```
 //! use imu_core::noise::{RandomWalk, Sensor, Stage, ThreeAxis, White};
 //!
-//! let dt = 1.0 / 200.0; // s
+//! let dt: f64 = 1.0 / 200.0; // s
 //! let terms = (White { noise_density: 0.019 }, RandomWalk { random_walk: 5e-4 });
 //! let mut accelerometer = ThreeAxis::prepare([terms; 3], dt, 7, Sensor::ACCELEROMETER)?;
 //!
