@@ -12,8 +12,10 @@ use imu_core::Real;
 
 mod edf;
 pub mod inputs;
+mod ladder;
 mod noise;
 mod scalar;
+mod trajectory;
 
 /// Where a case leaves its results.
 pub trait Report {
@@ -58,6 +60,25 @@ pub const CASES: &[Case] = &[
     Case { name: "noise f64", run: noise::case::<f64> },
     Case { name: "noise steps f32", run: noise::absent_terms::<f32> },
     Case { name: "noise steps f64", run: noise::absent_terms::<f64> },
+    Case { name: "trajectory f32", run: trajectory::case::<f32> },
+    Case { name: "trajectory f64", run: trajectory::case::<f64> },
+    Case { name: "Allan f32 1", run: ladder::bits::<f32, 1, 1> },
+    Case { name: "Allan f32 4", run: ladder::bits::<f32, 4, 1> },
+    Case { name: "Hadamard f32 1", run: ladder::bits::<f32, 1, 2> },
+    Case { name: "Hadamard f32 4", run: ladder::bits::<f32, 4, 2> },
+    Case { name: "Allan f64 1", run: ladder::bits::<f64, 1, 1> },
+    Case { name: "Allan f64 4", run: ladder::bits::<f64, 4, 1> },
+    Case { name: "Hadamard f64 1", run: ladder::bits::<f64, 1, 2> },
+    Case { name: "Hadamard f64 4", run: ladder::bits::<f64, 4, 2> },
+    Case { name: "Allan f32 1 cost", run: ladder::cost::<f32, 1, 1> },
+    Case { name: "Allan f32 4 cost", run: ladder::cost::<f32, 4, 1> },
+    Case { name: "Hadamard f32 1 cost", run: ladder::cost::<f32, 1, 2> },
+    Case { name: "Hadamard f32 4 cost", run: ladder::cost::<f32, 4, 2> },
+    Case { name: "Allan f64 1 cost", run: ladder::cost::<f64, 1, 1> },
+    Case { name: "Allan f64 4 cost", run: ladder::cost::<f64, 4, 1> },
+    Case { name: "Hadamard f64 1 cost", run: ladder::cost::<f64, 1, 2> },
+    Case { name: "Hadamard f64 4 cost", run: ladder::cost::<f64, 4, 2> },
+    Case { name: "Allan f32 1 worst", run: ladder::worst_push },
 ];
 
 /// Does `work` `times` times and hides the results from the optimiser.

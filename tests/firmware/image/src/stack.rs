@@ -16,7 +16,7 @@ pub fn bytes(work: &mut dyn FnMut()) -> Option<usize> {
     let top: *mut u32;
     // SAFETY: reads the stack pointer.
     unsafe { asm!("mov {}, sp", out(reg) top, options(nomem, nostack)) };
-    // SAFETY: memory below the stack pointer, inside the 256 KB that the linker script leaves the
+    // SAFETY: memory below the stack pointer, inside the 1 MB that the linker script leaves the
     // stack, less what the image has used; no interrupt is enabled.
     unsafe {
         for word in MARGIN..DEPTH {

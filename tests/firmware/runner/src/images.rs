@@ -11,7 +11,7 @@ pub struct Target {
     pub name: &'static str,
     /// What rustc calls it.
     pub triple: &'static str,
-    /// QEMU's arguments for a machine with this processor and 256 KB of memory.
+    /// QEMU's arguments for a machine with this processor and 1 MB of each memory.
     pub machine: &'static [&'static str],
     /// Instructions in a tick of SysTick: 1 ns each, at the machine's processor clock.
     pub instructions_per_tick: f64,
@@ -29,7 +29,14 @@ pub const TARGETS: [Target; 2] = [
     Target {
         name: "M0",
         triple: "thumbv6m-none-eabi",
-        machine: &["-machine", "microbit", "-global", "nrf51-soc.sram-size=262144"],
+        machine: &[
+            "-machine",
+            "microbit",
+            "-global",
+            "nrf51-soc.sram-size=1048576",
+            "-global",
+            "nrf51-soc.flash-size=1048576",
+        ],
         // 16 MHz.
         instructions_per_tick: 62.5,
     },

@@ -1,0 +1,29 @@
+//! `imu_core::trajectory`: every trajectory, in both scalars.
+
+use crate::{Report, repeat};
+use core::hint::black_box;
+use imu_core::Real;
+use imu_core::trajectory::{Ellipse, Motion, Rest, Trajectory};
+
+/// Motions at spread instants, negative and far ones included.
+pub fn case<T: Real>(report: &mut dyn Report) {
+    let (ellipse, rest) = (black_box(Ellipse::default()), black_box(Rest::default()));
+    for t_ns in [i64::MIN, -1, 0, 1, 5_000_000, 1_000_000_007, 86_400_000_000_000, i64::MAX] {
+        motion::<T>(report, ellipse.at(black_box(t_ns)));
+        motion::<T>(report, rest.at(black_box(t_ns)));
+    }
+    for k in 0..64 {
+        motion::<T>(report, ellipse.at(k * 312_345_678));
+    }
+    report.instructions("ellipse", 16, &mut || {
+        repeat(16, || -> Motion<T> { ellipse.at(black_box(7_000_000_000)) });
+    });
+}
+
+fn motion<T: Real>(report: &mut dyn Report, motion: Motion<T>) {
+    for vector in [motion.position_w, motion.velocity_w, motion.angular_rate, motion.specific_force]
+    {
+        vector.iter().for_each(|&x| report.real(x));
+    }
+    motion.attitude_wb.coords.iter().for_each(|&x| report.real(x));
+}
