@@ -15,6 +15,7 @@ pub mod inputs;
 mod ladder;
 mod noise;
 mod scalar;
+pub mod single;
 mod trajectory;
 
 /// Where a case leaves its results.
