@@ -20,6 +20,8 @@
 //! assert!((reading.deviation() - 85.95287).abs() < 5e-6);
 //! ```
 
+use std::ops::Sub;
+
 use imu_core::Error;
 use imu_core::allan::{Difference, Mixture, edf};
 
@@ -148,14 +150,12 @@ impl Batch {
             };
             match difference {
                 Difference::Allan => {
-                    let [a, b, c] = [0, 1, 2].map(edge);
-                    fill(chunk, stride, |i| block(b, c, i) - block(a, b, i));
+                    fill(chunk, stride, [0, 1, 2].map(edge), |[a, b, c]| (c - b) - (b - a));
                 }
                 Difference::Hadamard => {
-                    let [a, b, c, d] = [0, 1, 2, 3].map(edge);
-                    fill(chunk, stride, |i| {
-                        let middle = block(b, c, i);
-                        (block(c, d, i) - middle) - (middle - block(a, b, i))
+                    fill(chunk, stride, [0, 1, 2, 3].map(edge), |[a, b, c, d]| {
+                        let middle = c - b;
+                        ((d - c) - middle) - (middle - (b - a))
                     });
                 }
             }
@@ -165,22 +165,24 @@ impl Batch {
     }
 }
 
-/// Two stretches of the prefix sum, high and low parts.
-type Edge<'a> = (&'a [f64], &'a [f64]);
-
-/// The sum of the samples between two points of the prefix sum.
+/// What `difference` makes of every `stride`th set of points on the `edges` of a window's blocks;
+/// stride 1 apart, so that it compiles to vector instructions.
 #[inline(always)]
-fn block((left, left_rest): Edge, (right, right_rest): Edge, i: usize) -> f64 {
-    (right[i] - left[i]) + (right_rest[i] - left_rest[i])
-}
-
-/// Every `stride`th of `values`; stride 1 apart, so that it compiles to vector instructions.
-#[inline(always)]
-fn fill(out: &mut [f64], stride: usize, values: impl Fn(usize) -> f64) {
+fn fill<const N: usize>(
+    out: &mut [f64],
+    stride: usize,
+    edges: [(&[f64], &[f64]); N],
+    difference: impl Fn([Pair; N]) -> f64,
+) {
+    let at = |edges: [(&[f64], &[f64]); N], i: usize| {
+        difference(edges.map(|(high, low)| Pair { high: high[i], low: low[i] }))
+    };
     if stride == 1 {
-        out.iter_mut().enumerate().for_each(|(i, v)| *v = values(i));
+        let n = out.len();
+        let edges = edges.map(|(high, low)| (&high[..n], &low[..n]));
+        out.iter_mut().enumerate().for_each(|(i, v)| *v = at(edges, i));
     } else {
-        out.iter_mut().enumerate().for_each(|(i, v)| *v = values(i * stride));
+        out.iter_mut().enumerate().for_each(|(i, v)| *v = at(edges, i * stride));
     }
 }
 
@@ -212,6 +214,14 @@ impl Pair {
         let (high, lost) = two_sum(self.high, value);
         self.high = high;
         self.low += lost;
+    }
+}
+
+impl Sub for Pair {
+    type Output = f64;
+
+    fn sub(self, other: Self) -> f64 {
+        (self.high - other.high) + (self.low - other.low)
     }
 }
 
