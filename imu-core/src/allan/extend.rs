@@ -5,14 +5,14 @@
 //! does not start at a multiple of 64, that has a value to reject, or that follows missing samples
 //! is pushed.
 
-use super::ladder::{LEARNT, Ladder, pairwise};
-use super::total::Total;
+use super::ladder::{Block, LEARNT, Ladder, difference, pairwise};
+use super::total::{SETTLE, Total};
 use crate::Real;
 
 /// Samples a chunk: a power of two, so that chunks and blocks of all levels begin together.
 const CHUNK: usize = 64;
 /// A chunk's blocks of one level, after the blocks of the past that they are compared with.
-const ROWS: usize = CHUNK + 8;
+type Rows<T, const AXES: usize> = [[T; AXES]; CHUNK + 8];
 
 impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, const ORDER: usize>
     Ladder<T, AXES, LEVELS, WINDOWS, ORDER>
@@ -23,33 +23,49 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
     pub fn extend(&mut self, samples: &[[T; AXES]]) {
         let mut rest = samples;
         while !rest.is_empty() {
+            rest = self.climb_all(rest);
             let to_boundary = CHUNK - (self.position as usize & (CHUNK - 1));
-            if to_boundary == CHUNK
-                && self.held == LEARNT
-                && let Some((chunk, after)) = rest.split_first_chunk::<CHUNK>()
-                && self.lower_levels_are_whole()
-                && self.climb(chunk)
-            {
-                rest = after;
-                continue;
-            }
             let (now, after) = rest.split_at(to_boundary.min(rest.len()));
             now.iter().for_each(|sample| self.push(sample));
             rest = after;
         }
     }
 
+    /// Takes whole chunks as long as they can be taken as such. Returns the samples that are left.
+    fn climb_all<'a>(&mut self, samples: &'a [[T; AXES]]) -> &'a [[T; AXES]] {
+        let at_boundary = self.position & (CHUNK as u64 - 1) == 0;
+        if samples.len() < CHUNK
+            || !at_boundary
+            || self.held != LEARNT
+            || !self.lower_levels_are_whole()
+        {
+            return samples;
+        }
+        let mut scratch = [[[T::ZERO; AXES]; CHUNK + 8]; 2];
+        let mut rest = samples;
+        while let Some((chunk, after)) = rest.split_first_chunk() {
+            if !self.climb(chunk, &mut scratch) {
+                break;
+            }
+            rest = after;
+        }
+        rest
+    }
+
     /// How many blocks of a level end within a chunk.
+    #[inline(always)]
     const fn blocks(level: usize) -> usize {
         CHUNK >> Self::stride_log2(level)
     }
 
-    /// How many of them there must be for a pass over the level; fewer are carried one by one.
+    /// How many blocks of the past a level's first blocks of a chunk are compared with.
+    #[inline(always)]
     const fn past(level: usize) -> usize {
         Self::lag(level) * ORDER
     }
 
-    /// Whether the blocks that a chunk's are compared with have all their samples.
+    /// Whether the blocks that a chunk's are compared with have all their samples. A chunk that is
+    /// taken as a whole leaves it so.
     fn lower_levels_are_whole(&self) -> bool {
         self.counts.iter().enumerate().take_while(|&(level, _)| Self::passes(level)).all(
             |(level, counts)| {
@@ -60,7 +76,8 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
         )
     }
 
-    /// Whether a chunk goes through this level as a whole.
+    /// Whether a chunk goes through this level as a whole. (It has at least two blocks of it for
+    /// every one that begins within a block.)
     const fn passes(level: usize) -> bool {
         level < LEVELS && level < CHUNK.trailing_zeros() as usize
     }
@@ -68,25 +85,20 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
     /// Takes a chunk through the levels. Does nothing and returns `false` if a value is out of
     /// bounds or not finite.
     #[inline]
-    fn climb(&mut self, chunk: &[[T; AXES]; CHUNK]) -> bool {
-        let mut one = [[T::ZERO; AXES]; ROWS];
-        let mut good = [true; AXES];
-        for (row, sample) in one.iter_mut().skip(Self::past(0)).zip(chunk) {
-            for i in 0..AXES {
-                row[i] = sample[i] - self.reference[i];
-                good[i] &= row[i].abs() <= self.bound[i];
-            }
-        }
-        if good.contains(&false) {
+    fn climb(&mut self, chunk: &[[T; AXES]; CHUNK], scratch: &mut [Rows<T, AXES>; 2]) -> bool {
+        let [rows, above] = scratch;
+        if !self.center(chunk, rows) {
             return false;
         }
-
         let start = self.position;
-        let mut other = [[T::ZERO; AXES]; ROWS];
-        let (mut rows, mut above) = (&mut one, &mut other);
+        let (mut rows, mut above) = (rows, above);
         let mut level = 0;
         while Self::passes(level) {
-            self.pass_level(level, start, rows, above);
+            self.pass_level(level, rows, above);
+            let end = (start as u32).wrapping_add(CHUNK as u32) >> Self::stride_log2(level);
+            if end & (SETTLE - 1) == 0 {
+                self.settle(level);
+            }
             core::mem::swap(&mut rows, &mut above);
             level += 1;
         }
@@ -94,27 +106,38 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
             let stride = 1_u64 << Self::stride_log2(level);
             for row in rows.iter().skip(Self::past(level)).take(Self::blocks(level)) {
                 self.position = self.position.wrapping_add(stride);
-                self.carry(level, *row, 1_u32 << level);
+                self.carry(level, Block { sum: *row, count: 1_u32 << level });
             }
         }
         self.position = start.wrapping_add(CHUNK as u64);
         true
     }
 
+    /// The samples less the reference, as blocks of level 0; whether all are within the bound.
+    #[inline]
+    fn center(&self, chunk: &[[T; AXES]; CHUNK], rows: &mut Rows<T, AXES>) -> bool {
+        // A maximum finds what is out of bounds, but forgets a NaN; a sum does not.
+        let mut furthest = [T::ZERO; AXES];
+        let mut sum = [T::ZERO; AXES];
+        for (row, sample) in rows.iter_mut().skip(Self::past(0)).zip(chunk) {
+            for i in 0..AXES {
+                row[i] = sample[i] - self.reference[i];
+                let distance = row[i].abs();
+                furthest[i] = if distance > furthest[i] { distance } else { furthest[i] };
+                sum[i] += distance;
+            }
+        }
+        furthest.iter().zip(&self.bound).all(|(furthest, bound)| furthest <= bound)
+            && sum.iter().all(|sum| sum.is_finite())
+    }
+
     /// All of a chunk's blocks of one level: their differences into the totals, the sums of
     /// neighbours into `above`, the last blocks into the history.
     #[inline]
-    fn pass_level(
-        &mut self,
-        level: usize,
-        start: u64,
-        rows: &mut [[T; AXES]; ROWS],
-        above: &mut [[T; AXES]; ROWS],
-    ) {
+    fn pass_level(&mut self, level: usize, rows: &mut Rows<T, AXES>, above: &mut Rows<T, AXES>) {
         let (lag, past, blocks) = (Self::lag(level), Self::past(level), Self::blocks(level));
-        // Blocks end at multiples of the stride; the slot of the first, as in `carry`.
-        let first = ((start as u32 >> Self::stride_log2(level)) as usize).wrapping_add(1);
-        let slot = |k: usize| first.wrapping_add(k) & (lag - 1) & (WINDOWS - 1);
+        // Slots go on with every block: a chunk's first is in slot 1, as in `carry`.
+        let slot = |k: usize| (k + 1) & (lag - 1) & (WINDOWS - 1);
         let (Some(history), Some(squares), Some(differences)) = (
             self.history.get_mut(level),
             self.squares.get_mut(level),
@@ -122,59 +145,65 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
         ) else {
             return;
         };
-
-        let mut room = rows.iter_mut();
-        for age in history.iter().rev() {
+        for (age, history) in history.iter().rev().enumerate() {
             for k in 0..lag {
-                if let Some(row) = room.next() {
-                    *row = age[slot(k)];
+                if let Some(row) = rows.get_mut(age * lag + k) {
+                    *row = history[slot(k)];
                 }
             }
         }
 
-        let oldest = rows.iter();
-        let before = rows.iter().skip(lag);
-        let now = rows.iter().skip(past).take(blocks);
-        let mut totals = *squares;
-        if ORDER == 1 {
-            for (now, before) in now.zip(oldest) {
-                for i in 0..AXES {
-                    let d = now[i] - before[i];
-                    totals[i].add(d * d);
-                }
-            }
-        } else {
-            for ((now, before), oldest) in now.zip(before).zip(oldest) {
-                for i in 0..AXES {
-                    let d = (now[i] - before[i]) - (before[i] - oldest[i]);
-                    totals[i].add(d * d);
-                }
-            }
-        }
-        *squares = totals;
-        *differences = differences.wrapping_add(blocks as u64);
-
+        let (Some(now), Some(before), Some(oldest), Some(sums)) = (
+            rows.get(past..past + blocks),
+            rows.get(past - lag..past - lag + blocks),
+            rows.get(..blocks),
+            above.get_mut(Self::past(level + 1)..),
+        ) else {
+            return;
+        };
+        let mut totals = squares.each_ref().map(Total::fine);
         // A block of the level above ends with every second block here, or with every one where
         // the stride is the same.
-        let step = 1_usize << (Self::stride_log2(level + 1) - Self::stride_log2(level));
-        let second = rows.iter().skip(past).take(blocks).skip(step - 1).step_by(step);
-        let first_half = rows.iter().skip(past - lag).skip(step - 1).step_by(step);
-        let sums = above.iter_mut().skip(Self::past(level + 1));
-        for (sum, (b, a)) in sums.zip(second.zip(first_half)) {
-            *sum = pairwise(b, a);
+        if Self::stride_log2(level + 1) == Self::stride_log2(level) {
+            let blocks = now.iter().zip(before).zip(oldest);
+            for (((now, before), oldest), sum) in blocks.zip(sums) {
+                add_squares::<T, AXES, ORDER>(&mut totals, now, before, oldest);
+                *sum = pairwise(now, before);
+            }
+        } else {
+            let (now, before, oldest) =
+                (now.as_chunks::<2>().0, before.as_chunks::<2>().0, oldest.as_chunks::<2>().0);
+            for (((now, before), oldest), sum) in now.iter().zip(before).zip(oldest).zip(sums) {
+                add_squares::<T, AXES, ORDER>(&mut totals, &now[0], &before[0], &oldest[0]);
+                add_squares::<T, AXES, ORDER>(&mut totals, &now[1], &before[1], &oldest[1]);
+                *sum = pairwise(&now[1], &before[1]);
+            }
         }
+        for (square, total) in squares.iter_mut().zip(totals) {
+            square.set_fine(total);
+        }
+        *differences = differences.wrapping_add(blocks as u64);
 
-        for (age, history) in history.iter_mut().enumerate() {
+        for (age, history) in history.iter_mut().rev().enumerate() {
             for k in 0..lag {
-                // The last `lag` blocks, or for age 1 the `lag` before them.
-                if let Some(row) = rows.get(past + blocks - lag * (age + 1) + k) {
-                    history[slot(blocks - lag + k)] = *row;
+                if let Some(row) = rows.get(blocks + age * lag + k) {
+                    history[slot(k)] = *row;
                 }
             }
         }
-        let end = (start as u32).wrapping_add(CHUNK as u32) >> Self::stride_log2(level);
-        if end & (super::total::SETTLE - 1) == 0 {
-            self.settle(level);
-        }
+    }
+}
+
+/// Adds the squared differences of a block and those before it.
+#[inline(always)]
+fn add_squares<T: Real, const AXES: usize, const ORDER: usize>(
+    totals: &mut [T; AXES],
+    now: &[T; AXES],
+    before: &[T; AXES],
+    oldest: &[T; AXES],
+) {
+    for i in 0..AXES {
+        let d = difference::<T, ORDER>(now[i], before[i], oldest[i]);
+        totals[i] += d * d;
     }
 }

@@ -274,69 +274,99 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
     /// Takes a sample of a ladder that has learnt.
     #[inline]
     pub(super) fn accept(&mut self, sample: &[T; AXES]) {
-        let mut value = [T::ZERO; AXES];
+        let mut value = *sample;
         let mut good = true;
         for i in 0..AXES {
-            value[i] = sample[i] - self.reference[i];
+            value[i] -= self.reference[i];
             good &= value[i].abs() <= self.bound[i]; // false for a NaN
         }
         if good {
             self.position = self.position.wrapping_add(1);
-            self.carry(0, value, 1);
+            if let Some(above) = self.visit(0, &Block { sum: value, count: 1 }) {
+                self.carry(1, above);
+            }
         } else {
-            self.rejected = self.rejected.saturating_add(1);
-            self.pass(1);
+            self.reject();
         }
     }
 
-    /// A block of `level` is complete at `position`: compares it with its neighbours, and hands what
-    /// it makes with the one before to the level above, as far up as blocks are complete.
-    #[inline]
-    pub(super) fn carry(&mut self, level: usize, mut sum: [T; AXES], mut count: u32) {
-        let end = self.position as u32; // phases want no more than its low bits
+    /// A sample came that counts as missing.
+    #[cold]
+    #[inline(never)]
+    fn reject(&mut self) {
+        self.rejected = self.rejected.saturating_add(1);
+        self.pass(1);
+    }
+
+    /// A block of `level` is complete at `position`: takes it up the levels as far as blocks are
+    /// complete there.
+    pub(super) fn carry(&mut self, level: usize, block: Block<T, AXES>) {
+        let mut block = block;
         for level in level..LEVELS {
-            let full = 1_u32 << level;
-            let phase = end >> Self::stride_log2(level);
-            let slot = phase as usize & (Self::lag(level) - 1) & (WINDOWS - 1);
-            let history = &mut self.history[level];
-            let counts = &mut self.counts[level];
-
-            // This block, the one before, and (Hadamard) the one before that.
-            let mut blocks = [sum, history[0][slot], history[ORDER - 1][slot]];
-            let held = [count, counts[0][slot], counts[ORDER - 1][slot]];
-            history[ORDER - 1][slot] = blocks[1];
-            counts[ORDER - 1][slot] = held[1];
-            history[0][slot] = sum;
-            counts[0][slot] = count;
-            sum = pairwise(&sum, &blocks[1]);
-            count = held[0].saturating_add(held[1]);
-
-            let complete = held.iter().all(|&c| c == full);
-            if complete || held.iter().all(|&c| c > 0 && c >= full - full / 2) {
-                if !complete {
-                    self.excess[level].add(rescale::<T, AXES, ORDER>(&mut blocks, held, full));
-                }
-                for (i, total) in self.squares[level].iter_mut().enumerate() {
-                    let mut d = blocks[0][i] - blocks[1][i];
-                    if ORDER == 2 {
-                        d -= blocks[1][i] - blocks[2][i];
-                    }
-                    total.add(d * d);
-                }
-                self.differences[level] = self.differences[level].wrapping_add(1);
+            match self.visit(level, &block) {
+                Some(above) => block = above,
+                None => break,
             }
-            if phase & (SETTLE - 1) == 0 {
-                self.settle(level);
-            }
+        }
+    }
 
-            // The level above has a block here if this is one of its ends, and if the first half
-            // of that block lies within the record.
-            let above = Self::stride_log2(level + 1);
-            if end & (1_u32.wrapping_shl(above).wrapping_sub(1)) != 0
-                || (WINDOWS > 1 && self.position < 2 * u64::from(full))
-            {
-                break;
-            }
+    /// Compares a complete block with those before it, and puts it in their row. Returns the block
+    /// of the level above that it completes.
+    #[inline(always)]
+    fn visit(&mut self, level: usize, block: &Block<T, AXES>) -> Option<Block<T, AXES>> {
+        let end = self.position as u32; // phases want no more than its low bits
+        let full = 1_u32 << (level & 31);
+        let phase = end >> Self::stride_log2(level);
+        let slot = phase as usize & (Self::lag(level) - 1) & (WINDOWS - 1);
+
+        // This block, the one before, and (Hadamard) the one before that.
+        let (history, counts) = (self.history.get(level)?, self.counts.get(level)?);
+        let (before, oldest) = (&history[0][slot], &history[ORDER - 1][slot]);
+        let held = [block.count, counts[0][slot], counts[ORDER - 1][slot]];
+        if held.iter().all(|&count| count == full) {
+            add_squares::<T, AXES, ORDER>(self.squares.get_mut(level)?, &block.sum, before, oldest);
+            let differences = self.differences.get_mut(level)?;
+            *differences = differences.wrapping_add(1);
+        } else if held.iter().all(|&count| count > 0 && count >= full - full / 2) {
+            self.compare_partial(level, [block.sum, *before, *oldest], held);
+        }
+        if phase & (SETTLE - 1) == 0 {
+            self.settle(level);
+        }
+
+        // The level above has a block here if this is one of its ends, and if the first half of
+        // that block lies within the record.
+        let (history, counts) = (self.history.get_mut(level)?, self.counts.get_mut(level)?);
+        let ends = end & 1_u32.wrapping_shl(Self::stride_log2(level + 1)).wrapping_sub(1) == 0;
+        let above = if ends && (WINDOWS == 1 || self.position >= 2 * u64::from(full)) {
+            let sum = pairwise(&block.sum, &history[0][slot]);
+            Some(Block { sum, count: block.count.wrapping_add(counts[0][slot]) })
+        } else {
+            None
+        };
+        if ORDER == 2 {
+            history[1][slot] = history[0][slot];
+            counts[1][slot] = counts[0][slot];
+        }
+        history[0][slot] = block.sum;
+        counts[0][slot] = block.count;
+        above
+    }
+
+    /// Compares blocks that miss samples, each scaled to a full one.
+    #[cold]
+    #[inline(never)]
+    fn compare_partial(&mut self, level: usize, mut blocks: [[T; AXES]; 3], held: [u32; 3]) {
+        let excess = rescale::<T, AXES, ORDER>(&mut blocks, held, 1_u32 << (level & 31));
+        let [now, before, oldest] = &blocks;
+        if let Some(squares) = self.squares.get_mut(level) {
+            add_squares::<T, AXES, ORDER>(squares, now, before, oldest);
+        }
+        if let Some(differences) = self.differences.get_mut(level) {
+            *differences = differences.wrapping_add(1);
+        }
+        if let Some(total) = self.excess.get_mut(level) {
+            total.add(excess);
         }
     }
 
@@ -385,7 +415,7 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
                 break;
             }
             self.position = next;
-            self.carry(level, [T::ZERO; AXES], 0);
+            self.carry(level, Block { sum: [T::ZERO; AXES], count: 0 });
         }
         self.position = end;
     }
@@ -394,8 +424,7 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
     #[cold]
     fn learn(&mut self, sample: &[T; AXES]) {
         if !sample.iter().all(|x| x.abs() <= T::LIMIT) {
-            self.rejected = self.rejected.saturating_add(1);
-            self.pass(1);
+            self.reject();
             return;
         }
         let held = usize::from(self.held);
@@ -465,6 +494,12 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
     }
 }
 
+/// A block of samples: their sum, less the reference, and how many of them came.
+pub(super) struct Block<T, const AXES: usize> {
+    pub(super) sum: [T; AXES],
+    pub(super) count: u32,
+}
+
 /// Sums of neighbouring blocks.
 #[inline(always)]
 pub(super) fn pairwise<T: Real, const AXES: usize>(a: &[T; AXES], b: &[T; AXES]) -> [T; AXES] {
@@ -475,9 +510,28 @@ pub(super) fn pairwise<T: Real, const AXES: usize>(a: &[T; AXES], b: &[T; AXES])
     sum
 }
 
+/// Adds the squared differences of a block, the one before, and (Hadamard) the one before that.
+#[inline(always)]
+fn add_squares<T: Real, const AXES: usize, const ORDER: usize>(
+    totals: &mut [T::Total; AXES],
+    now: &[T; AXES],
+    before: &[T; AXES],
+    oldest: &[T; AXES],
+) {
+    for i in 0..AXES {
+        let d = difference::<T, ORDER>(now[i], before[i], oldest[i]);
+        totals[i].add(d * d);
+    }
+}
+
+/// The first difference of two blocks, or the second of three.
+#[inline(always)]
+pub(super) fn difference<T: Real, const ORDER: usize>(now: T, before: T, oldest: T) -> T {
+    if ORDER == 1 { now - before } else { (now - before) - (before - oldest) }
+}
+
 /// Scales blocks of `held` samples to `full` ones. Returns the relative excess of white noise in
 /// their difference: Σ cᵢ² full/heldᵢ / Σ cᵢ² − 1, c = (1, −1) or (1, −2, 1).
-#[cold]
 fn rescale<T: Real, const AXES: usize, const ORDER: usize>(
     blocks: &mut [[T; AXES]; 3],
     held: [u32; 3],

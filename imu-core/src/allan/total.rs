@@ -15,6 +15,10 @@ pub trait Total<T>: Copy + core::fmt::Debug + PartialEq + Send + Sync + 'static 
     const ZERO: Self;
     /// Adds a term.
     fn add(&mut self, term: T);
+    /// The part that terms are added to.
+    fn fine(&self) -> T;
+    /// Replaces that part, after terms were added to it.
+    fn set_fine(&mut self, fine: T);
     /// Moves what has gathered to where large sums are kept.
     fn settle(&mut self);
     /// Adds another total.
@@ -32,6 +36,14 @@ impl Total<f64> for f64 {
     #[inline(always)]
     fn add(&mut self, term: f64) {
         *self += term;
+    }
+    #[inline(always)]
+    fn fine(&self) -> f64 {
+        *self
+    }
+    #[inline(always)]
+    fn set_fine(&mut self, fine: f64) {
+        *self = fine;
     }
     #[inline(always)]
     fn settle(&mut self) {}
@@ -62,6 +74,14 @@ impl Total<f32> for TwoStage {
     #[inline(always)]
     fn add(&mut self, term: f32) {
         self.fine += term;
+    }
+    #[inline(always)]
+    fn fine(&self) -> f32 {
+        self.fine
+    }
+    #[inline(always)]
+    fn set_fine(&mut self, fine: f32) {
+        self.fine = fine;
     }
     #[inline(always)]
     fn settle(&mut self) {
