@@ -1,1 +1,3 @@
 //! Published data and helpers that the cross-crate tests share.
+
+pub mod command;
