@@ -1,0 +1,224 @@
+//! The grid of a sensor's clock, followed slowly, and the rules that place a stamp on it.
+
+use crate::recording::Sample;
+
+/// A stamp within this part of a period from its place is in its place.
+const NEAR: f64 = 0.5;
+
+/// Stamps that must all stay away from the grid before anything is made of it, at least and at
+/// most: twice as many as would come in a bunch after a stall of the length seen, and more while
+/// they are catching up, since another stall may follow.
+const AHEAD: (usize, usize) = (32, 1024);
+
+/// Fewer stamps than this, at the end of a recording, prove nothing against usual jitter.
+const PROOF: usize = 8;
+
+/// A gap of so many periods shows the phase anew better than the period could predict it.
+const LONG: f64 = 100.0;
+
+/// Nanoseconds beyond which a gap is a restart. Whoever leaves a sensor for an hour has switched
+/// it off, or the clock was set (a computer that finds its time server): in both cases nothing
+/// connects what lies before and after.
+const LONGEST: f64 = 3600e9;
+
+/// A clock set back by less (ns) was adjusted while samples went on; by more, it tells of another
+/// recording.
+const ADJUSTMENT: f64 = 1e9;
+
+/// Memory, in samples, of the slow mean that finds losses hidden in jitter.
+const SLOW: f64 = 256.0;
+
+/// The slow mean is away by a sample when it exceeds this part of a period. Jitter of ±2 periods
+/// moves it by 0.05 (standard deviation 1.15/√512).
+const SLIP: f64 = 0.7;
+
+/// Errors count at most so many periods, and less where jitter is less: neither a wild stamp nor a
+/// stall may move the grid.
+const CLIP: f64 = 2.0;
+
+/// Memory, in samples, of the mean square of errors.
+const JITTER: f64 = 4096.0;
+
+/// Jitter (rms, periods) from which stamps are no longer taken at their word.
+const JITTERY: f64 = 0.1;
+
+/// What a stamp away from the grid means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// Jitter: the sample is the next one.
+    Next,
+    /// So many samples did not come; `shift` is what the stamps say, in ns.
+    Missing { count: u64, shift: f64 },
+    /// The clock was adjusted: samples go on.
+    Adjusted { shift: f64 },
+    /// Nothing connects before and after.
+    Restart { shift: f64 },
+}
+
+/// Phase and period of a sensor's clock. All times are nanoseconds after `origin`.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    origin: i64,
+    period: f64,
+    /// Where the next sample is expected.
+    next: f64,
+    /// Where the first sample of this stretch was.
+    start: f64,
+    /// Grid points passed in this stretch.
+    points: u64,
+    /// Exponential mean of errors, ns.
+    slow: f64,
+    /// Exponential mean of squared errors, periods².
+    jitter: f64,
+    /// Sum of squared errors (ns²) and their number.
+    squares: f64,
+    accepted: u64,
+}
+
+impl Grid {
+    /// A grid whose first sample is expected at `next` ns after `origin`; `jitter` is the mean square
+    /// of errors in periods, each at most 2.
+    pub fn new(origin: i64, period: f64, next: f64, jitter: f64) -> Self {
+        Self {
+            origin,
+            period,
+            next,
+            start: next,
+            points: 0,
+            slow: 0.0,
+            jitter,
+            squares: 0.0,
+            accepted: 0,
+        }
+    }
+
+    /// Stamp minus expected stamp, ns.
+    #[inline]
+    pub fn error(&self, stamp_ns: i64) -> f64 {
+        stamp_ns.saturating_sub(self.origin) as f64 - self.next
+    }
+
+    /// Whether a stamp with this error is in its place.
+    #[inline]
+    pub fn near(&self, error: f64) -> bool {
+        error.abs() <= NEAR * self.period
+    }
+
+    /// Takes a sample in as the next, and lets the grid follow; the number of samples that the
+    /// slow mean shows to be missing before it.
+    #[inline]
+    pub fn accept(&mut self, error: f64) -> u64 {
+        let limit = CLIP * self.period;
+        let error = error.clamp(-limit, limit);
+        let square = error * error;
+        self.squares += square;
+        self.accepted += 1;
+        self.jitter += (square / (self.period * self.period) - self.jitter) * (1.0 / JITTER);
+        let limit = (2.0 * self.jitter.sqrt()).clamp(NEAR, CLIP) * self.period;
+        let error = error.clamp(-limit, limit);
+        self.slow += (error - self.slow) * (1.0 / SLOW);
+        // A second-order loop, critically damped: clean stamps are followed eight times faster.
+        let gain = if self.jitter < JITTERY * JITTERY { 1.0 / 512.0 } else { 1.0 / 4096.0 };
+        self.next += self.period + gain * error;
+        self.period += 0.25 * gain * gain * error;
+        self.points += 1;
+        if self.slow > SLIP * self.period {
+            self.slow -= self.period;
+            self.next += self.period;
+            self.points += 1;
+            return 1;
+        }
+        if self.slow < -SLIP * self.period {
+            self.next += self.slow;
+            self.start += self.slow;
+            self.slow = 0.0;
+        }
+        0
+    }
+
+    /// What a stamp away from its place means, in the light of those `after` it; `None` when more
+    /// of them are needed, and come.
+    pub fn judge(&self, stamp_ns: i64, after: &[Sample], at_end: bool) -> Option<Verdict> {
+        let first = self.error(stamp_ns);
+        let side = first.signum();
+        let (least, most) = AHEAD;
+        let mut wanted =
+            (2.0 * first.abs() / self.period).clamp(least as f64, most as f64) as usize;
+        let stamps = || std::iter::once(stamp_ns).chain(after.iter().map(|s| s.stamp_ns));
+        let errors = || {
+            let expected = (0..most).map(|j| j as f64 * self.period);
+            stamps().zip(expected).map(|(stamp, expected)| self.error(stamp) - expected)
+        };
+        let (mut nearest, mut farthest, mut seen) = (f64::INFINITY, 0.0_f64, 0);
+        for error in errors() {
+            if seen == wanted {
+                break;
+            }
+            if side * error <= NEAR * self.period {
+                return Some(Verdict::Next);
+            }
+            farthest = farthest.max(side * error);
+            let catching_up = side * error < farthest - self.period;
+            let bunch = if catching_up { most } else { (2.0 * farthest / self.period) as usize };
+            wanted = wanted.max(bunch.min(most));
+            nearest = nearest.min(side * error);
+            seen += 1;
+        }
+        if seen < wanted && !at_end {
+            return None;
+        }
+        let jitter = self.jitter.sqrt() * self.period;
+        if seen < PROOF && nearest - 3.0 * jitter <= NEAR * self.period {
+            return Some(Verdict::Next);
+        }
+        let mut shift = side * nearest;
+        if jitter > JITTERY * self.period {
+            let mut errors: Vec<f64> = errors().take(2 * least).collect();
+            errors.sort_unstable_by(f64::total_cmp);
+            shift = errors.get(errors.len() / 2).copied().unwrap_or(shift);
+        }
+        Some(if !(-ADJUSTMENT..=LONGEST).contains(&shift) {
+            Verdict::Restart { shift }
+        } else if shift < 0.0 {
+            Verdict::Adjusted { shift }
+        } else {
+            Verdict::Missing { count: (shift / self.period).round().max(1.0) as u64, shift }
+        })
+    }
+
+    /// Passes over `count` grid points; after many, the phase is taken from the stamps.
+    pub fn miss(&mut self, count: u64, shift: f64) {
+        let periods = count as f64;
+        self.next += if periods < LONG { periods * self.period } else { shift };
+        self.points += count;
+    }
+
+    /// Follows a clock that was set.
+    pub fn adjust(&mut self, shift: f64) {
+        self.next += shift;
+        self.start += shift;
+    }
+
+    /// Starts a new stretch, `shift` away from where the next sample was expected.
+    pub fn restart(&mut self, shift: f64) {
+        self.origin = self.origin.saturating_add(shift as i64);
+        self.start = self.next;
+        self.points = 0;
+        self.slow = 0.0;
+    }
+
+    /// Intervals between the grid points of this stretch.
+    pub fn intervals(&self) -> f64 {
+        self.points.saturating_sub(1) as f64
+    }
+
+    /// Nanoseconds from the first to the last grid point of this stretch.
+    pub fn elapsed(&self) -> f64 {
+        if self.points == 0 { 0.0 } else { (self.next - self.period - self.start).max(0.0) }
+    }
+
+    /// Root mean square of errors, ns.
+    pub fn jitter_rms(&self) -> f64 {
+        if self.accepted == 0 { 0.0 } else { (self.squares / self.accepted as f64).sqrt() }
+    }
+}

@@ -1,0 +1,224 @@
+//! From stamps to a uniform grid: which samples are consecutive, and how many are missing between.
+//!
+//! Stamps jitter, come in bunches, drift with the host's clock, are lost, doubled and set back. An
+//! Allan ladder wants consecutive readings and the number of those that did not come. So the grid
+//! of the sensor's own clock is fitted to the first [`PREFIX`] stamps by least squares and then
+//! followed slowly, in phase and period. A sample belongs to the next grid point, whatever its
+//! stamp, unless the stamps that follow *all* stay away from the grid as well: a late stamp is
+//! followed by one in its place, a lost sample is not. The rules are those of `grid.rs`.
+//!
+//! ```
+//! use imu_tools::recording::{Event, Sample, Timeline};
+//! let mut timeline = Timeline::new();
+//! let (mut values, mut missing) = (0, 0);
+//! let mut count = |event: Event<'_>| match event {
+//!     Event::Values(list) => values += list.len(),
+//!     Event::Missing(n) => missing += n,
+//!     Event::Restart => {}
+//! };
+//! for i in (0..1000).filter(|i| !(500..510).contains(i)) {
+//!     timeline.push(&[Sample { stamp_ns: i * 5_000_000, value: [0.0; 3] }], &mut count);
+//! }
+//! let summary = timeline.finish(&mut count);
+//! assert_eq!((values, missing), (990, 10));
+//! assert!((summary.rate_hz - 200.0).abs() < 1e-9);
+//! ```
+
+mod fit;
+mod grid;
+
+use super::Sample;
+use grid::{Grid, Verdict};
+
+/// The first samples are held back until there are so many, or the recording ends.
+pub const PREFIX: usize = 4096;
+
+/// What the samples of one sensor say to a ladder, in order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event<'a> {
+    /// Readings at consecutive instants of the grid (non-finite ones included).
+    Values(&'a [[f64; 3]]),
+    /// So many instants of the grid have no reading.
+    Missing(u64),
+    /// The clock was set back, or more than an hour is missing: no difference spans this.
+    Restart,
+}
+
+/// A stretch without readings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// Seconds from the first sample to the last one before the gap.
+    pub at_s: f64,
+    /// Samples that did not come.
+    pub missing: u64,
+}
+
+/// What is known of a sensor's stamps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Summary {
+    /// Samples handed on.
+    pub samples: u64,
+    /// Rate in Hz, fitted over the whole recording; 0 where fewer than two stamps differ.
+    pub rate_hz: f64,
+    /// Seconds from the first sample to the last, without what a [`Event::Restart`] spans.
+    pub span_s: f64,
+    /// The first gaps, at most [`Summary::GAPS_LISTED`].
+    pub gaps: Vec<Gap>,
+    /// All gaps, listed or not.
+    pub gap_count: u64,
+    /// Samples missing in all gaps.
+    pub missing: u64,
+    /// Samples with the stamp of the one before: dropped where the reading is the same as well,
+    /// handed on where it is another one.
+    pub duplicates: u64,
+    /// Stamps earlier than the one before.
+    pub backward: u64,
+    /// Times that the timeline was started anew.
+    pub restarts: u64,
+    /// Root mean square of stamp minus grid, seconds.
+    pub jitter_s: f64,
+}
+
+impl Summary {
+    /// So many gaps are listed one by one; the others are only counted.
+    pub const GAPS_LISTED: usize = 1000;
+}
+
+/// Snaps the stamps of one sensor to the grid of its rate.
+#[derive(Clone, Debug, Default)]
+pub struct Timeline {
+    summary: Summary,
+    /// Samples whose place is not decided.
+    pending: Vec<Sample>,
+    last: Option<Sample>,
+    values: Vec<[f64; 3]>,
+    grid: Option<Grid>,
+    /// Grid intervals and nanoseconds of the stretches before the last restart.
+    intervals: f64,
+    nanoseconds: f64,
+}
+
+impl Timeline {
+    /// A timeline that has seen nothing.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes the next samples and hands on what can be decided: the first [`PREFIX`] samples are
+    /// held back until the rate is known, later ones only where a gap may begin.
+    pub fn push(&mut self, samples: &[Sample], mut to: impl FnMut(Event<'_>)) {
+        for sample in samples {
+            if let Some(last) = self.last {
+                if sample.stamp_ns == last.stamp_ns {
+                    self.summary.duplicates += 1;
+                    if sample.value.map(f64::to_bits) == last.value.map(f64::to_bits) {
+                        continue;
+                    }
+                }
+                self.summary.backward += u64::from(sample.stamp_ns < last.stamp_ns);
+            }
+            self.last = Some(*sample);
+            self.pending.push(*sample);
+        }
+        if self.grid.is_some() || self.pending.len() >= PREFIX {
+            self.decide(false, &mut to);
+        }
+    }
+
+    /// Hands on what was held back, and says what the stamps were like.
+    pub fn finish(mut self, mut to: impl FnMut(Event<'_>)) -> Summary {
+        self.decide(true, &mut to);
+        if let Some(grid) = self.grid.take() {
+            self.close_stretch(&grid);
+            self.summary.jitter_s = grid.jitter_rms() * 1e-9;
+        }
+        if self.nanoseconds > 0.0 {
+            self.summary.rate_hz = 1e9 * self.intervals / self.nanoseconds;
+        }
+        self.summary.span_s = self.nanoseconds * 1e-9;
+        self.summary
+    }
+
+    /// Adds the stretch that ends here to the totals.
+    fn close_stretch(&mut self, grid: &Grid) {
+        self.intervals += grid.intervals();
+        self.nanoseconds += grid.elapsed();
+    }
+
+    /// Places the pending samples, all of them at the end of the recording.
+    fn decide(&mut self, at_end: bool, to: &mut impl FnMut(Event<'_>)) {
+        let pending = std::mem::take(&mut self.pending);
+        let mut grid = match self.grid.take() {
+            Some(grid) => grid,
+            None => match fit::grid(&pending) {
+                Some(grid) => grid,
+                None => {
+                    // No two stamps differ: the readings are all there is.
+                    self.values.extend(pending.iter().map(|sample| sample.value));
+                    self.hand_on(to);
+                    return;
+                }
+            },
+        };
+        let mut placed = 0;
+        while let Some((sample, after)) = pending.get(placed..).and_then(|p| p.split_first()) {
+            let error = grid.error(sample.stamp_ns);
+            let verdict = if grid.near(error) {
+                Verdict::Next
+            } else {
+                match grid.judge(sample.stamp_ns, after, at_end) {
+                    Some(verdict) => verdict,
+                    None => break,
+                }
+            };
+            match verdict {
+                Verdict::Next => {}
+                Verdict::Missing { count, shift } => {
+                    self.missing(count, grid.elapsed(), to);
+                    grid.miss(count, shift);
+                }
+                Verdict::Adjusted { shift } => grid.adjust(shift),
+                Verdict::Restart { shift } => {
+                    self.hand_on(to);
+                    to(Event::Restart);
+                    self.summary.restarts += 1;
+                    self.close_stretch(&grid);
+                    grid.restart(shift);
+                }
+            }
+            let missed = grid.accept(grid.error(sample.stamp_ns));
+            if missed > 0 {
+                self.missing(missed, grid.elapsed(), to);
+            }
+            self.values.push(sample.value);
+            placed += 1;
+        }
+        self.hand_on(to);
+        self.grid = Some(grid);
+        self.pending = pending;
+        self.pending.drain(..placed);
+    }
+
+    /// Hands on the readings before a gap, and the gap.
+    fn missing(&mut self, count: u64, elapsed: f64, to: &mut impl FnMut(Event<'_>)) {
+        self.hand_on(to);
+        to(Event::Missing(count));
+        self.summary.gap_count += 1;
+        self.summary.missing += count;
+        if self.summary.gaps.len() < Summary::GAPS_LISTED {
+            let at_s = (self.nanoseconds + elapsed) * 1e-9;
+            self.summary.gaps.push(Gap { at_s, missing: count });
+        }
+    }
+
+    fn hand_on(&mut self, to: &mut impl FnMut(Event<'_>)) {
+        if !self.values.is_empty() {
+            self.summary.samples += self.values.len() as u64;
+            to(Event::Values(&self.values));
+            self.values.clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
