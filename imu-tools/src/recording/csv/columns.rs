@@ -171,7 +171,7 @@ const FOREIGN: [&str; 10] =
 impl Name {
     fn new(name: &[u8]) -> Self {
         let text = String::from_utf8_lossy(name);
-        let text = text.trim().trim_start_matches(['#', '%']);
+        let text = text.trim().trim_start_matches('%');
         let (name, bracketed) = match text.find(['[', '(']) {
             Some(at) => {
                 let (name, unit) = text.split_at(at);
@@ -253,7 +253,7 @@ mod tests {
         let customary = Columns::customary();
         for (header, time, rate, force) in [
             (
-                "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],\
+                "timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],\
                  a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]",
                 Some(TimeUnit::Nanoseconds),
                 rate,

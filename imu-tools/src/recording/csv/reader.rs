@@ -280,15 +280,19 @@ fn from_headers(headers: &[&[u8]], separator: Separator) -> Option<Result<Column
         // Names may be separated in another way than numbers: by a comma and a blank, say.
         let own = Separator::of(header);
         let separator = if own == Separator::Blanks { own } else { separator };
-        let names = header.trim_ascii_start();
+        let comment = header.trim_ascii_start();
+        let names = match comment {
+            [b'#' | b'%', names @ ..] => names,
+            names => names,
+        };
         match Columns::from_names(separator.split(names)) {
             Ok(found) => return Some(Ok(found)),
-            Err(what) => first = first.or(Some((names, what))),
+            Err(what) => first = first.or(Some((names.len() < comment.len(), what))),
         }
     }
     // A comment of one sentence is no header.
-    let (names, what) = first?;
-    (!names.starts_with(b"#") && !names.starts_with(b"%")).then_some(Err(what))
+    let (comment, what) = first?;
+    (!comment).then_some(Err(what))
 }
 
 /// The start of a field, to be shown.

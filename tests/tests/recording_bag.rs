@@ -1,0 +1,316 @@
+//! Bags: what is written is read back, and what is cut, shuffled or lying is survived.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use imu_tools::error::Error;
+use imu_tools::recording::{self, Block, Note, ReadOptions, Sample};
+
+const START: i64 = 1_700_000_000_000_000_000;
+
+fn block(count: i64) -> Block {
+    let mut block = Block::default();
+    for i in 0..count {
+        let (stamp_ns, v) = (START + i * 4_999_999, i as f64 * 0.1);
+        block.gyroscope.push(Sample { stamp_ns, value: [v, -v, 1e-300 * v] });
+        block.accelerometer.push(Sample { stamp_ns, value: [f64::MAX, -0.0, 9.81 + v] });
+    }
+    block
+}
+
+fn write(path: &Path, blocks: &[Block]) {
+    let mut sink = recording::create(path).unwrap();
+    for block in blocks {
+        sink.write_block(block).unwrap();
+    }
+    sink.finish().unwrap();
+}
+
+/// All samples and notes of a file.
+fn read(path: &Path, options: &ReadOptions) -> Result<(Block, Vec<Note>), Error> {
+    let mut source = recording::open(path, options)?;
+    let (mut all, mut block) = (Block::default(), Block::default());
+    while source.next_block(&mut block)? {
+        all.gyroscope.append(&mut block.gyroscope);
+        all.accelerometer.append(&mut block.accelerometer);
+    }
+    assert!(!source.next_block(&mut block)?, "the end is the end");
+    Ok((all, source.take_notes()))
+}
+
+fn read_bytes(bytes: &[u8], options: &ReadOptions) -> Result<(Block, Vec<Note>), Error> {
+    let mut file = tempfile::NamedTempFile::with_suffix(".bag").unwrap();
+    file.write_all(bytes).unwrap();
+    read(file.path(), options)
+}
+
+fn folder() -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.bag");
+    (folder, path)
+}
+
+/// A record with these header fields, in this order.
+fn record(fields: &[(&str, &[u8])], data: &[u8]) -> Vec<u8> {
+    let mut header = Vec::new();
+    for (name, value) in fields {
+        header.extend(((name.len() + 1 + value.len()) as u32).to_le_bytes());
+        header.extend([name.as_bytes(), b"=", value].concat());
+    }
+    let mut record = (header.len() as u32).to_le_bytes().to_vec();
+    record.extend(header);
+    record.extend((data.len() as u32).to_le_bytes());
+    record.extend(data);
+    record
+}
+
+fn connection(number: u32, topic: &str, type_name: &str) -> Vec<u8> {
+    let mut data = Vec::new();
+    for field in [
+        format!("topic={topic}"),
+        format!("type={type_name}"),
+        "md5sum=*".to_owned(),
+        "message_definition=...".to_owned(),
+    ] {
+        data.extend((field.len() as u32).to_le_bytes());
+        data.extend(field.as_bytes());
+    }
+    let number = number.to_le_bytes();
+    record(&[("topic", topic.as_bytes()), ("op", &[7]), ("conn", &number)], &data)
+}
+
+/// An Imu message at second `sec`, recorded a second later.
+fn message(number: u32, sec: u32, order: usize) -> Vec<u8> {
+    let mut payload = vec![0; 4];
+    payload.extend(sec.to_le_bytes());
+    payload.extend([0; 4]);
+    payload.extend(3_u32.to_le_bytes());
+    payload.extend(b"imu");
+    payload.extend((0..37).flat_map(|i| f64::from(i).to_le_bytes()));
+    let mut time = (sec + 1).to_le_bytes().to_vec();
+    time.extend([0; 4]);
+    let number = number.to_le_bytes();
+    let mut fields: Vec<(&str, &[u8])> = vec![("op", &[2]), ("conn", &number), ("time", &time)];
+    fields.rotate_left(order % 3);
+    record(&fields, &payload)
+}
+
+fn chunk(records: &[Vec<u8>]) -> Vec<u8> {
+    let data = records.concat();
+    let size = (data.len() as u32).to_le_bytes();
+    record(&[("size", &size), ("compression", b"none"), ("op", &[5])], &data)
+}
+
+fn bag(records: &[Vec<u8>]) -> Vec<u8> {
+    let (zero, one) = (0_u64.to_le_bytes(), 1_u32.to_le_bytes());
+    let header = record(
+        &[("op", &[3]), ("index_pos", &zero), ("conn_count", &one), ("chunk_count", &one)],
+        &[b' '; 4027],
+    );
+    [b"#ROSBAG V2.0\n".to_vec(), header, records.concat()].concat()
+}
+
+#[test]
+fn samples_are_read_back_to_the_bit() {
+    let (_folder, path) = folder();
+    // Several chunks, several blocks.
+    let blocks = [block(3000), block(4000), block(1)];
+    write(&path, &blocks);
+    let (all, notes) = read(&path, &ReadOptions::default()).unwrap();
+    let expected: Vec<_> = blocks.iter().flat_map(|b| &b.gyroscope).copied().collect();
+    assert_eq!(all.gyroscope, expected);
+    let expected: Vec<_> = blocks.iter().flat_map(|b| &b.accelerometer).copied().collect();
+    assert_eq!(all.accelerometer, expected);
+    assert_eq!(notes, []);
+}
+
+#[test]
+fn sensors_of_different_rates_share_a_bag() {
+    let (_folder, path) = folder();
+    let mut block = block(1000);
+    block.accelerometer.retain(|s| (s.stamp_ns - START) / 4_999_999 % 4 == 0);
+    write(&path, std::slice::from_ref(&block));
+    assert_eq!(read(&path, &ReadOptions::default()).unwrap().0, block);
+}
+
+#[test]
+fn the_same_samples_give_the_same_bytes() {
+    let (_folder, path) = folder();
+    write(&path, &[block(5000)]);
+    let whole = std::fs::read(&path).unwrap();
+    let pieces: Vec<Block> = (0..5000)
+        .map(|i| {
+            let all = block(5000);
+            Block { gyroscope: vec![all.gyroscope[i]], accelerometer: vec![all.accelerometer[i]] }
+        })
+        .take(50)
+        .collect();
+    write(&path, &pieces);
+    let short = std::fs::read(&path).unwrap();
+    write(&path, &[block(50)]);
+    assert_eq!(std::fs::read(&path).unwrap(), short);
+    write(&path, &[block(5000)]);
+    assert_eq!(std::fs::read(&path).unwrap(), whole);
+}
+
+#[test]
+fn an_empty_recording_is_a_bag_without_messages() {
+    let (_folder, path) = folder();
+    write(&path, &[]);
+    assert_eq!(read(&path, &ReadOptions::default()).unwrap(), (Block::default(), vec![]));
+}
+
+#[test]
+fn a_bag_cut_anywhere_gives_every_whole_message() {
+    let (_folder, path) = folder();
+    write(&path, &[block(3)]);
+    let bytes = std::fs::read(&path).unwrap();
+    // Where each message ends: behind its force, that is, 72 bytes of covariance behind it.
+    let ends: Vec<usize> = block(3)
+        .accelerometer
+        .iter()
+        .map(|s| {
+            let force: Vec<u8> = s.value.iter().flat_map(|v| v.to_le_bytes()).collect();
+            bytes.windows(24).position(|w| w == force).unwrap() + 24 + 72
+        })
+        .collect();
+    for cut in 0..bytes.len() {
+        let whole = ends.iter().filter(|end| **end <= cut).count();
+        match read_bytes(&bytes[..cut], &ReadOptions::default()) {
+            Ok((all, notes)) => {
+                assert_eq!(all.gyroscope, block(3).gyroscope[..whole], "cut at {cut}");
+                let told = notes.iter().any(|n| matches!(n, Note::Warning(w) if w.contains("cut")));
+                assert!(told || whole == 3, "cut at {cut}: {notes:?}");
+            }
+            Err(error) => assert_eq!(whole, 0, "cut at {cut}: {error}"),
+        }
+    }
+}
+
+#[test]
+fn fields_in_any_order_and_messages_outside_of_chunks() {
+    for order in 0..3 {
+        let records = [
+            chunk(&[connection(0, "/imu", "sensor_msgs/Imu"), message(0, 5, order)]),
+            chunk(&[message(0, 6, order), message(0, 7, order + 1)]),
+            // What a recorder was writing when it died: a chunk whose size is still 0.
+            record(&[("compression", b"none"), ("op", &[5]), ("size", &[0; 4])], &[]),
+            message(0, 8, order),
+        ];
+        for (bag_time, first) in [(false, 5), (true, 6)] {
+            let options = ReadOptions { bag_time, ..ReadOptions::default() };
+            let (all, notes) = read_bytes(&bag(&records), &options).unwrap();
+            let seconds: Vec<i64> =
+                all.gyroscope.iter().map(|s| s.stamp_ns / 1_000_000_000).collect();
+            assert_eq!(seconds, [first, first + 1, first + 2, first + 3]);
+            assert_eq!(all.gyroscope[0].value, [13.0, 14.0, 15.0]);
+            assert_eq!(all.accelerometer[0].value, [25.0, 26.0, 27.0]);
+            assert!(matches!(&notes[..], [Note::Warning(w)] if w.contains("not closed")));
+        }
+    }
+}
+
+#[test]
+fn topics_are_found_listed_and_asked_for() {
+    let imu = "sensor_msgs/Imu";
+    let two = bag(&[chunk(&[
+        connection(0, "/camera", "sensor_msgs/Image"),
+        connection(1, "/gyro", imu),
+        message(1, 5, 0),
+        connection(2, "/accel", imu),
+        message(2, 6, 0),
+        message(1, 7, 0),
+    ])]);
+    let topic = |topic: &str| ReadOptions { topic: Some(topic.into()), ..ReadOptions::default() };
+    let error = read_bytes(&two, &ReadOptions::default()).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    for part in ["/gyro", "/accel", "--topic"] {
+        assert!(error.to_string().contains(part), "{error}");
+    }
+    assert_eq!(read_bytes(&two, &topic("gyro")).unwrap().0.gyroscope.len(), 2);
+    let (both, _) = read_bytes(&two, &topic("/gyro,/accel")).unwrap();
+    assert_eq!((both.gyroscope.len(), both.accelerometer.len()), (2, 1));
+    assert_eq!(both.accelerometer[0].stamp_ns, 6_000_000_000);
+
+    let error = read_bytes(&two, &topic("/imu")).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    for part in ["no topic /imu", "/camera (sensor_msgs/Image)", "/gyro (sensor_msgs/Imu)"] {
+        assert!(error.to_string().contains(part), "{error}");
+    }
+    let error = read_bytes(&two, &topic("/camera")).unwrap_err();
+    assert!(error.to_string().contains("holds sensor_msgs/Image"), "{error}");
+
+    let none = bag(&[chunk(&[connection(0, "/camera", "sensor_msgs/Image")])]);
+    let error = read_bytes(&none, &ReadOptions::default()).unwrap_err();
+    assert_eq!(error.exit_code(), 1);
+    assert!(error.to_string().contains("/camera (sensor_msgs/Image)"), "{error}");
+}
+
+#[test]
+fn compressed_bags_say_how_to_decompress() {
+    let fields: [(&str, &[u8]); 3] =
+        [("compression", b"bz2"), ("op", &[5]), ("size", &[9, 0, 0, 0])];
+    let error = read_bytes(&bag(&[record(&fields, b"BZh9")]), &ReadOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("rosbag decompress"), "{error}");
+}
+
+#[test]
+fn claims_of_gigabytes_are_survived() {
+    let connection = connection(0, "/imu", "sensor_msgs/Imu");
+    let good = chunk(&[connection, message(0, 5, 0)]);
+    let claim = u32::MAX.to_le_bytes();
+    let mut lies: Vec<Vec<u8>> = vec![claim.to_vec()];
+    for fields in [&message(0, 6, 0)[..], &chunk(&[])[..]] {
+        let header = 4 + u32::from_le_bytes(fields[..4].try_into().unwrap()) as usize;
+        lies.push([&fields[..header], &claim, &[0; 100]].concat());
+    }
+    let mut frame = message(0, 6, 0);
+    let at = frame.len() - 37 * 8 - 3 - 4;
+    frame[at..at + 4].copy_from_slice(&claim);
+    lies.push(frame);
+    for lie in lies {
+        let (all, notes) = read_bytes(&bag(&[good.clone(), lie]), &ReadOptions::default()).unwrap();
+        assert_eq!(all.gyroscope.len(), 1);
+        assert!(!notes.is_empty());
+    }
+}
+
+#[test]
+fn damage_in_a_chunk_costs_its_rest_only() {
+    let first = chunk(&[
+        connection(0, "/imu", "sensor_msgs/Imu"),
+        message(0, 5, 0),
+        vec![0xff; 100],
+        message(0, 6, 0),
+    ]);
+    let bytes = bag(&[first, chunk(&[message(0, 7, 0)])]);
+    let (all, notes) = read_bytes(&bytes, &ReadOptions::default()).unwrap();
+    assert_eq!(all.gyroscope.len(), 2);
+    assert!(matches!(&notes[0], Note::Warning(w) if w.contains("damaged")), "{notes:?}");
+}
+
+#[test]
+fn stamps_that_a_bag_cannot_hold_are_refused_and_leave_nothing() {
+    for stamp_ns in [-1, i64::MAX] {
+        let (folder, path) = folder();
+        let mut sink = recording::create(&path).unwrap();
+        let gyroscope = vec![Sample { stamp_ns, value: [0.0; 3] }];
+        let error = sink.write_block(&Block { gyroscope, accelerometer: vec![] }).unwrap_err();
+        assert!(error.to_string().contains("1970 to 2106"), "{error}");
+        drop(sink);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}
+
+#[test]
+fn what_is_no_recording_says_so() {
+    let options = ReadOptions::default();
+    let error = read_bytes(b"", &options).unwrap_err();
+    assert!(error.to_string().ends_with("is empty"), "{error}");
+    let error = read_bytes(b"t,gx,gy,gz,ax,ay,az\n1,2,3,4,5,6,7\n", &options).unwrap_err();
+    assert!(error.to_string().contains("no ROS 1 bag"), "{error}");
+    let error = recording::open(Path::new("/no/such.bag"), &options).err().unwrap();
+    assert!(error.to_string().contains("no such file"), "{error}");
+    let error = recording::create(Path::new("a.xyz")).err().unwrap();
+    assert_eq!(error.exit_code(), 2);
+}
