@@ -5,7 +5,8 @@
 //! small `Copy` value that turns truth into measurement with additions, multiplications and a
 //! normal number, without exponential or square root outside the normal's rare branches. Every term
 //! of every axis draws from its own stream ([`Channel`]), so that switching one never changes
-//! another's numbers.
+//! another's numbers. The same stream gives other numbers in `f32` than in `f64`; each the same on
+//! every target.
 //!
 //! ```
 //! use imu_core::noise::{RandomWalk, Sensor, Stage, ThreeAxis, White};

@@ -9,7 +9,7 @@
 //! (`f32`) or 98.5 % (`f64`) of the numbers; the rest need an exponential, and the tail beyond
 //! 3.44 (3.65) two logarithms, all from the `libm` crate: so the same bits on every target. The
 //! positions are odd multiples of 2⁻²⁴ (2⁻⁵³) of a layer's width: the law is exactly symmetric and
-//! no number is zero. Its tails end at 8.3 (`f32`) and 13.7 (`f64`).
+//! no number is zero. Its tails end at 8.3 (`f32`) and 12.2 (`f64`).
 //!
 //! ```
 //! use imu_core::noise::{Normal, Xoshiro128PlusPlus};

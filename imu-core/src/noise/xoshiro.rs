@@ -32,7 +32,7 @@ pub(super) const fn mix(z: u64) -> u64 {
 
 macro_rules! xoshiro {
     ($(#[$doc:meta])* $name:ident, $word:ident, $bytes:literal, $sum:literal, $shift:literal,
-     $last:literal, $seeded:expr) => {
+     $last:literal, $of:ident => $state:expr) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub struct $name {
@@ -68,9 +68,8 @@ macro_rules! xoshiro {
             /// SplitMix64 does not repeat a word.
             #[inline]
             fn seed_from_u64(seed: u64) -> Self {
-                let word = |k: u64| mix(seed.wrapping_add(GOLDEN.wrapping_mul(k)));
-                let seeded: fn(&dyn Fn(u64) -> u64) -> [$word; 4] = $seeded;
-                Self { state: seeded(&word) }
+                let $of = |k: u64| mix(seed.wrapping_add(GOLDEN.wrapping_mul(k)));
+                Self { state: $state }
             }
         }
     };
@@ -79,7 +78,7 @@ macro_rules! xoshiro {
 xoshiro!(
     /// xoshiro128++: 16 bytes, period 2¹²⁸ − 1, a 32-bit word at a time. Drives the `f32` noise.
     Xoshiro128PlusPlus, u32, 16, 7, 9, 11,
-    |word| {
+    word => {
         let (a, b) = (word(1), word(2));
         [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32]
     }
@@ -88,7 +87,7 @@ xoshiro!(
 xoshiro!(
     /// xoshiro256++: 32 bytes, period 2²⁵⁶ − 1, a 64-bit word at a time. Drives the `f64` noise.
     Xoshiro256PlusPlus, u64, 32, 23, 17, 45,
-    |word| [word(1), word(2), word(3), word(4)]
+    word => [word(1), word(2), word(3), word(4)]
 );
 
 impl TryRng for Xoshiro128PlusPlus {
