@@ -73,7 +73,7 @@ fn euroc_rows() {
     let (block, notes) = read(text.as_bytes(), &ReadOptions::default()).unwrap();
     assert_eq!(block.gyroscope[0].stamp_ns, 1_403_636_579_758_555_392);
     assert_eq!(block.gyroscope[0].value[1], 0.14730578886832138);
-    assert_eq!(block.accelerometer[0].value[2], -2.4026292499999999);
+    assert_eq!(block.accelerometer[0].value[2], -2.402_629_25);
     assert_eq!(notes, []);
 }
 

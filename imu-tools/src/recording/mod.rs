@@ -33,6 +33,7 @@ mod input;
 mod timeline;
 mod units;
 
+use std::io::Read;
 use std::path::Path;
 
 pub use timeline::{Event, Gap, Summary, Timeline};
@@ -144,8 +145,25 @@ pub struct ReadOptions {
 /// # Errors
 /// When there is no such file, its format is unknown, or it holds no IMU.
 pub fn open(path: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Error> {
-    let mut input = Input::open(path)?;
+    recognise(Input::open(path)?, options)
+}
+
+/// Reads a recording from any stream, front to back; errors call it `path`.
+///
+/// # Errors
+/// As [`open`].
+pub fn read_from(
+    path: &Path,
+    stream: Box<dyn Read + Send>,
+    options: &ReadOptions,
+) -> Result<Box<dyn Source>, Error> {
+    recognise(Input::pipe(path, stream), options)
+}
+
+/// The reader of the format that the first bytes show.
+fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>, Error> {
     input.fill(512)?;
+    let path = input.path();
     let start = input.at_hand();
     let start = start.get(..512).unwrap_or(start);
     if start.is_empty() {

@@ -21,7 +21,7 @@ pub fn grid(samples: &[Sample]) -> Option<Grid> {
     let period = if fitted > 0.0 { fitted } else { period };
     let start = points.chunk_by(|a, b| a.stretch == b.stretch).next()?;
     let phase = center(start.iter().map(|p| p.time - period * p.index).collect());
-    let error = |p: &Point| ((p.time - period * p.index - phase) / period).clamp(-2.0, 2.0);
+    let error = |p: &Point| (p.time - period * p.index - phase).clamp(-2.0 * period, 2.0 * period);
     let jitter = start.iter().map(|p| error(p) * error(p)).sum::<f64>() / start.len() as f64;
     Some(Grid::new(origin, period, phase, jitter))
 }

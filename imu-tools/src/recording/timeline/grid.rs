@@ -68,16 +68,47 @@ pub struct Grid {
     points: u64,
     /// Exponential mean of errors, ns.
     slow: f64,
-    /// Exponential mean of squared errors, periods².
+    /// Exponential mean of squared errors, ns².
     jitter: f64,
+    /// What follows from period and jitter, and is computed anew now and then.
+    bounds: Bounds,
     /// Sum of squared errors (ns²) and their number.
     squares: f64,
     accepted: u64,
 }
 
+/// Limits of errors in ns, and how fast the grid follows.
+#[derive(Clone, Copy, Debug, Default)]
+struct Bounds {
+    near: f64,
+    widest: f64,
+    usual: f64,
+    slip: f64,
+    phase_gain: f64,
+    period_gain: f64,
+}
+
+impl Bounds {
+    /// They are computed anew after so many samples.
+    const EVERY: u64 = 64;
+
+    fn of(period: f64, jitter: f64) -> Self {
+        // A second-order loop, critically damped: clean stamps are followed eight times faster.
+        let gain = if jitter < JITTERY * JITTERY * period * period { 512.0 } else { 4096.0 };
+        Self {
+            near: NEAR * period,
+            widest: CLIP * period,
+            usual: (2.0 * jitter.sqrt()).clamp(NEAR * period, CLIP * period),
+            slip: SLIP * period,
+            phase_gain: 1.0 / gain,
+            period_gain: 0.25 / (gain * gain),
+        }
+    }
+}
+
 impl Grid {
     /// A grid whose first sample is expected at `next` ns after `origin`; `jitter` is the mean square
-    /// of errors in periods, each at most 2.
+    /// of errors in ns², each at most two periods.
     pub fn new(origin: i64, period: f64, next: f64, jitter: f64) -> Self {
         Self {
             origin,
@@ -87,6 +118,7 @@ impl Grid {
             points: 0,
             slow: 0.0,
             jitter,
+            bounds: Bounds::of(period, jitter),
             squares: 0.0,
             accepted: 0,
         }
@@ -101,38 +133,43 @@ impl Grid {
     /// Whether a stamp with this error is in its place.
     #[inline]
     pub fn near(&self, error: f64) -> bool {
-        error.abs() <= NEAR * self.period
+        error.abs() <= self.bounds.near
     }
 
     /// Takes a sample in as the next, and lets the grid follow; the number of samples that the
     /// slow mean shows to be missing before it.
     #[inline]
     pub fn accept(&mut self, error: f64) -> u64 {
-        let limit = CLIP * self.period;
-        let error = error.clamp(-limit, limit);
-        let square = error * error;
-        self.squares += square;
-        self.accepted += 1;
-        self.jitter += (square / (self.period * self.period) - self.jitter) * (1.0 / JITTER);
-        let limit = (2.0 * self.jitter.sqrt()).clamp(NEAR, CLIP) * self.period;
-        let error = error.clamp(-limit, limit);
+        let Bounds { widest, usual, slip, phase_gain, period_gain, .. } = self.bounds;
+        let (mut wide, mut error) = (error, error);
+        if !self.near(error) {
+            wide = wide.clamp(-widest, widest);
+            error = error.clamp(-usual, usual);
+        }
+        self.squares += wide * wide;
+        self.jitter += (wide * wide - self.jitter) * (1.0 / JITTER);
         self.slow += (error - self.slow) * (1.0 / SLOW);
-        // A second-order loop, critically damped: clean stamps are followed eight times faster.
-        let gain = if self.jitter < JITTERY * JITTERY { 1.0 / 512.0 } else { 1.0 / 4096.0 };
-        self.next += self.period + gain * error;
-        self.period += 0.25 * gain * gain * error;
+        self.next += self.period + phase_gain * error;
+        self.period += period_gain * error;
         self.points += 1;
-        if self.slow > SLIP * self.period {
+        self.accepted += 1;
+        if self.accepted.is_multiple_of(Bounds::EVERY) {
+            self.bounds = Bounds::of(self.period, self.jitter);
+        }
+        if self.slow.abs() > slip { self.slipped() } else { 0 }
+    }
+
+    /// The slow mean is away by a sample: one is missing, or the clock was adjusted.
+    #[cold]
+    fn slipped(&mut self) -> u64 {
+        if self.slow > 0.0 {
             self.slow -= self.period;
             self.next += self.period;
             self.points += 1;
             return 1;
         }
-        if self.slow < -SLIP * self.period {
-            self.next += self.slow;
-            self.start += self.slow;
-            self.slow = 0.0;
-        }
+        self.adjust(self.slow);
+        self.slow = 0.0;
         0
     }
 
@@ -167,7 +204,7 @@ impl Grid {
         if seen < wanted && !at_end {
             return None;
         }
-        let jitter = self.jitter.sqrt() * self.period;
+        let jitter = self.jitter.sqrt();
         if seen < PROOF && nearest - 3.0 * jitter <= NEAR * self.period {
             return Some(Verdict::Next);
         }

@@ -107,22 +107,32 @@ impl Timeline {
     /// Takes the next samples and hands on what can be decided: the first [`PREFIX`] samples are
     /// held back until the rate is known, later ones only where a gap may begin.
     pub fn push(&mut self, samples: &[Sample], mut to: impl FnMut(Event<'_>)) {
-        for sample in samples {
-            if let Some(last) = self.last {
-                if sample.stamp_ns == last.stamp_ns {
-                    self.summary.duplicates += 1;
-                    if sample.value.map(f64::to_bits) == last.value.map(f64::to_bits) {
-                        continue;
-                    }
-                }
-                self.summary.backward += u64::from(sample.stamp_ns < last.stamp_ns);
-            }
-            self.last = Some(*sample);
-            self.pending.push(*sample);
-        }
+        self.take_in(samples);
         if self.grid.is_some() || self.pending.len() >= PREFIX {
             self.decide(false, &mut to);
         }
+    }
+
+    /// Appends to the pending samples what is not there twice.
+    fn take_in(&mut self, samples: &[Sample]) {
+        self.pending.reserve(samples.len());
+        let mut before = self.last;
+        let mut backward = 0;
+        for sample in samples {
+            let step = before.map_or(1, |last| sample.stamp_ns.saturating_sub(last.stamp_ns));
+            backward += u64::from(step < 0);
+            let last = before.replace(*sample);
+            if step == 0 {
+                self.summary.duplicates += 1;
+                let bits = |sample: Sample| sample.value.map(f64::to_bits);
+                if last.map(bits) == Some(bits(*sample)) {
+                    continue;
+                }
+            }
+            self.pending.push(*sample);
+        }
+        self.last = before;
+        self.summary.backward += backward;
     }
 
     /// Hands on what was held back, and says what the stamps were like.
@@ -160,6 +170,7 @@ impl Timeline {
                 }
             },
         };
+        self.values.reserve(pending.len());
         let mut placed = 0;
         while let Some((sample, after)) = pending.get(placed..).and_then(|p| p.split_first()) {
             let error = grid.error(sample.stamp_ns);
