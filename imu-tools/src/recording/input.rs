@@ -39,7 +39,7 @@ impl Input {
     /// Opens `path`, or the standard input for `-`.
     pub fn open(path: &Path) -> Result<Self, Error> {
         if path == Path::new("-") {
-            return Ok(Self::pipe(path, Box::new(io::stdin())));
+            return Ok(Self::pipe(Path::new("standard input"), Box::new(io::stdin())));
         }
         let refused = |source| Error::io("read", path, source);
         let file = File::open(path).map_err(refused)?;

@@ -30,7 +30,7 @@
 pub mod bag;
 pub mod csv;
 mod input;
-mod timeline;
+pub mod timeline;
 mod units;
 
 use std::io::Read;

@@ -226,7 +226,7 @@ impl BagReader {
         let path = self.input.path().display();
         Err(Error::data(format!(
             "{path} is compressed ({}), which is not supported yet: decompress it with \
-             `rosbag decompress {path}`",
+             `rosbag decompress` and read the result",
             String::from_utf8_lossy(compression)
         )))
     }
