@@ -75,6 +75,10 @@ pub trait Real:
     fn sin_cos(self) -> (Self, Self);
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
+    /// The bits of its IEEE 754 form, the lower 32 for an `f32`.
+    fn bits(self) -> u64;
+    /// The value that [`bits`](Self::bits) gave.
+    fn from_bits(bits: u64) -> Self;
 }
 
 macro_rules! real {
@@ -115,6 +119,14 @@ macro_rules! real {
             #[inline(always)]
             fn is_finite(self) -> bool {
                 $T::is_finite(self)
+            }
+            #[inline(always)]
+            fn bits(self) -> u64 {
+                u64::from(self.to_bits())
+            }
+            #[inline(always)]
+            fn from_bits(bits: u64) -> Self {
+                $T::from_bits(bits as _)
             }
         }
     };

@@ -110,7 +110,7 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
     };
 
     /// How many samples wait before the ladder has learnt.
-    const WAIT: usize =
+    pub(super) const WAIT: usize =
         if LEVELS * ORDER * WINDOWS < LEARN { LEVELS * ORDER * WINDOWS } else { LEARN };
 
     /// An empty ladder that learns its reference and bound from the first samples.
@@ -409,8 +409,8 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
                 level += 1;
                 continue;
             }
-            let next =
-                (self.position | ((1_u64 << Self::stride_log2(level)) - 1)).saturating_add(1);
+            let stride = 1_u64 << Self::stride_log2(level);
+            let Some(next) = (self.position | (stride - 1)).checked_add(1) else { break };
             if next > end {
                 break;
             }

@@ -1,6 +1,7 @@
 //! Allan and Hadamard variance, streaming, over octaves of the averaging time τ; the noise that
 //! explains them.
 
+mod bytes;
 mod extend;
 mod ladder;
 mod reading;
