@@ -1,4 +1,4 @@
-//! `imu_core::allan::Ladder`: every operation, in both scalars, orders and numbers of windows; what
+//! `imu_core::allan::Ladder`: every operation and its byte form, in both scalars, orders and numbers of windows; what
 //! a sample costs.
 
 use crate::Report;
@@ -23,6 +23,7 @@ pub fn bits<T: Real, const WINDOWS: usize, const ORDER: usize>(report: &mut dyn 
     let mut ladder = Small::<T, WINDOWS, ORDER>::new();
     readings(report, &ladder);
     ladder.missing(3);
+    stored(report, &ladder);
     ladder.push(&[T::from_f64(1e4), T::from_f64(-1e4)]); // a glitch before all else
     for sample in samples::<T, 2, 40>(&mut integers) {
         ladder.push(&sample);
@@ -39,6 +40,7 @@ pub fn bits<T: Real, const WINDOWS: usize, const ORDER: usize>(report: &mut dyn 
         ladder.push(&sample);
     }
     readings(report, &ladder);
+    stored(report, &ladder);
 
     let mut other = Small::<T, WINDOWS, ORDER>::new();
     other.extend(&samples::<T, 2, 333>(&mut integers));
@@ -63,6 +65,21 @@ pub fn bits<T: Real, const WINDOWS: usize, const ORDER: usize>(report: &mut dyn 
             readings(report, &given);
         }
     }
+}
+
+/// The byte form, and whether it reads back as the same ladder.
+fn stored<T: Real, const WINDOWS: usize, const ORDER: usize>(
+    report: &mut dyn Report,
+    ladder: &Small<T, WINDOWS, ORDER>,
+) {
+    let mut bytes = [0_u8; 4096];
+    report.word(ladder.write_to(&mut bytes).map_or(0, |n| n as u64));
+    for word in bytes.as_chunks().0 {
+        report.word(u64::from_le_bytes(*word));
+    }
+    let written = bytes.get(..Small::<T, WINDOWS, ORDER>::BYTES).unwrap_or_default();
+    report.flag(Small::<T, WINDOWS, ORDER>::read_from(black_box(written)).as_ref() == Ok(ladder));
+    report.flag(Small::<T, WINDOWS, ORDER>::read_from(black_box(&bytes)).is_err());
 }
 
 fn readings<T: Real, const WINDOWS: usize, const ORDER: usize>(
