@@ -39,7 +39,8 @@
 //! The CRC is that of Ethernet and zip (IEEE 802.3: polynomial 0x04C11DB7, reflected 0xEDB88320, all
 //! ones at the start and inverted at the end). It finds every error of one burst of up to 32 bits.
 
-use super::ladder::{LEARN, LEARNT, Ladder};
+use super::ladder::Ladder;
+use super::learn::{LEARN, LEARNT};
 use super::total::Total;
 use crate::{Error, Real};
 

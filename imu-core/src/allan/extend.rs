@@ -5,7 +5,9 @@
 //! does not start at a multiple of 64, that has a value to reject, or that follows missing samples
 //! is pushed.
 
-use super::ladder::{Block, LEARNT, Ladder, difference, pairwise};
+use super::carry::{Block, difference, pairwise};
+use super::ladder::Ladder;
+use super::learn::LEARNT;
 use super::total::{SETTLE, Total};
 use crate::Real;
 
@@ -76,8 +78,7 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
         )
     }
 
-    /// Whether a chunk goes through this level as a whole. (It has at least two blocks of it for
-    /// every one that begins within a block.)
+    /// Whether a chunk goes through this level as a whole: it has two blocks' length of it.
     const fn passes(level: usize) -> bool {
         level < LEVELS && level < CHUNK.trailing_zeros() as usize
     }

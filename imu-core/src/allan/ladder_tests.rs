@@ -280,12 +280,3 @@ fn state_is_within_its_budget() {
     assert!(size_of::<HadamardLadder<f32, 6, 22>>() <= 2816);
     assert!(size_of::<AllanLadder<f64, 6, 22, 4>>() <= 18 * 1024);
 }
-
-#[test]
-fn the_median_is_the_middle() {
-    let mut values = [9.0; LEARN];
-    values[..5].copy_from_slice(&[3.0, -1.0, 8.0, 2.0, 2.0]);
-    assert_eq!(median(values, 5), 2.0);
-    assert_eq!(median(values, 4), 2.0);
-    assert_eq!(median(values, 0), 0.0);
-}

@@ -2,8 +2,10 @@
 //! explains them.
 
 mod bytes;
+mod carry;
 mod extend;
 mod ladder;
+mod learn;
 mod reading;
 mod total;
 
