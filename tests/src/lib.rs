@@ -1,3 +1,4 @@
 //! Published data and helpers that the cross-crate tests share.
 
 pub mod command;
+pub mod monte_carlo;

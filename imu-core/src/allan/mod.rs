@@ -2,19 +2,22 @@
 //! explains them.
 
 mod bytes;
-mod carry;
+mod chi_square;
+mod correlation;
+mod edf;
 mod extend;
+mod fit;
 mod ladder;
-mod learn;
+mod likelihood;
 mod reading;
 mod total;
 
+pub use chi_square::{chi_square_quantile, chi_square_tails};
+pub use edf::{Difference, Mixture, edf, interval};
+pub use fit::{
+    Contradiction, NoiseFit, Parameter, Sampling, average_octaves, fit_noise, fit_noise_from,
+    fitted_edf,
+};
 pub use ladder::{AllanLadder, HadamardLadder, Ladder};
 pub use reading::Octave;
 pub use total::{Total, TwoStage};
-
-mod chi_square;
-mod edf;
-
-pub use chi_square::{chi_square_quantile, chi_square_tails};
-pub use edf::{Difference, Mixture, edf, interval};

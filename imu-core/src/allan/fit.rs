@@ -1,0 +1,415 @@
+//! The noise that explains a ladder: N (white noise) and K (random walk), with intervals.
+//!
+//! The Allan variance of white noise and random walk is N²/τ + K²τ/3 (IEEE Std 952-1997, annex C;
+//! Hadamard: N²/τ + K²τ/6). N and K are fitted to the octaves of a ladder by the likelihood of
+//! their logarithms, correlations and all: over 4 h the error of K is within a few per cent of what
+//! is possible at all (`docs/estimators.md` has the Monte Carlo), without a matrix, a heap or a
+//! failure.
+//!
+//! **Short τ may lie.** A sensor's low-pass filter makes its short-τ variances too small, and those
+//! have the smallest intervals: they would decide the fit and ruin it. So octaves are taken in from
+//! the longest down; when one contradicts the fit of the longer ones by more than 4 standard
+//! deviations, and so does the next shorter one, both and all shorter ones are left out, and
+//! [`NoiseFit::contradiction`] says so.
+//!
+//! **Not observable** is an answer: when the record cannot tell a parameter from zero (with 90 %
+//! confidence), the fit gives the bound below which it lies, and how long to record.
+//!
+//! ```
+//! use imu_core::allan::{AllanLadder, Difference, Parameter, Sampling, fit_noise};
+//!
+//! let mut ladder: AllanLadder<f64, 1, 24, 4> = AllanLadder::new();
+//! let mut state = 1_u32;
+//! for _ in 0..100_000 {
+//!     // Uniform noise of sd 0.1 at 100 Hz: N = 0.1·√0.01 s = 0.01.
+//!     state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+//!     ladder.push(&[0.1 * 12_f64.sqrt() * (f64::from(state) / 4_294_967_296.0 - 0.5)]);
+//! }
+//! let sampling =
+//!     Sampling { tau0_s: 0.01, difference: Difference::Allan, windows: 4, records: 1 };
+//! let fit = fit_noise(&ladder.octaves(0), sampling);
+//! let Parameter::Observable { value, .. } = fit.noise_density else { panic!() };
+//! assert!((value - 0.01).abs() < 1e-4);
+//! assert!(matches!(fit.random_walk, Parameter::NotObservable { .. }));
+//! ```
+
+use super::likelihood::{AtRatio, Likelihood};
+use super::{Difference, Octave};
+
+/// How the octaves of a fit came about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// Time between samples, s.
+    pub tau0_s: f64,
+    /// Allan or Hadamard.
+    pub difference: Difference,
+    /// Windows per τ of the ladder: 1 or 4.
+    pub windows: u8,
+    /// How many independent records of the same noise are averaged in the octaves
+    /// ([`average_octaves`]); 1 for a single axis.
+    pub records: u32,
+}
+
+/// A noise parameter as far as a record shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Parameter {
+    /// The record shows it.
+    Observable {
+        /// The estimate.
+        value: f64,
+        /// Its standard deviation.
+        sd: f64,
+        /// Lower end of the 90 % confidence interval.
+        low90: f64,
+        /// Upper end of the 90 % confidence interval.
+        high90: f64,
+    },
+    /// The record cannot tell it from zero.
+    NotObservable {
+        /// It is below this with 90 % confidence; infinite when the record says nothing at all.
+        upper90: f64,
+        /// A record shorter than this (s) will not show it.
+        record_at_least_s: f64,
+    },
+}
+
+/// Short τ that contradict the longer ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contradiction {
+    /// Index of the longest octave that was left out; all shorter ones were, too.
+    pub octave: usize,
+    /// By how many standard deviations it contradicts the fit of the longer ones.
+    pub sigmas: f64,
+}
+
+/// White noise and random walk of one signal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoiseFit {
+    /// N, in the signal's unit /√Hz (angle or velocity random walk).
+    pub noise_density: Parameter,
+    /// K, in the signal's unit /(s·√Hz) = unit/s^1.5·… (rate or acceleration random walk).
+    pub random_walk: Parameter,
+    /// Indices of the shortest and longest octave that were used; `None`: there was nothing to use.
+    pub used: Option<(usize, usize)>,
+    /// Why shorter ones were not.
+    pub contradiction: Option<Contradiction>,
+}
+
+/// −2 ln likelihood ratio at the ends of a two-sided 90 % interval: 1.645².
+const INTERVAL: f64 = 2.7055;
+/// The same for a bound, one-sided 90 %: 1.2816². A parameter for which zero lies within such a
+/// bound is not observable.
+const UPPER: f64 = 1.6424;
+/// Contradiction of an octave, squared standard deviations.
+const CONTRADICTS: f64 = 16.0;
+/// The scan for contradictions starts where a record is this many averaging times long.
+const SCAN_FROM: f64 = 64.0;
+/// Step of the coarse search over ln(K/N).
+const COARSE: f64 = 0.6;
+/// Half-distance of numerical derivatives over ln(K/N).
+const DELTA: f64 = 0.02;
+
+/// Fits N and K to all octaves that do not contradict longer ones.
+///
+/// `octaves` are [`Ladder::octaves`](super::Ladder::octaves) of one axis (or an average of several,
+/// [`average_octaves`]). Anything may be in them: the result is never a NaN, and says *not
+/// observable* where there is nothing to see. Needs no heap; 0.2-0.5 KB of stack for each of about
+/// three nested calls.
+#[must_use]
+pub fn fit_noise(octaves: &[Octave], sampling: Sampling) -> NoiseFit {
+    let mut likelihood = Likelihood { octaves, sampling, from: 0, without: None };
+    let contradiction = contradiction(&likelihood);
+    likelihood.from = contradiction.map_or(0, |c| c.octave + 1);
+    NoiseFit { contradiction, ..fit(&likelihood) }
+}
+
+/// Fits N and K to the octaves from index `from` on, whatever they say of one another.
+#[must_use]
+pub fn fit_noise_from(octaves: &[Octave], sampling: Sampling, from: usize) -> NoiseFit {
+    fit(&Likelihood { octaves, sampling, from, without: None })
+}
+
+/// The octaves of several axes as one: their joint likelihood is that of the average, with
+/// [`Sampling::records`] set to the number of axes.
+#[must_use]
+pub fn average_octaves<const LEVELS: usize>(axes: &[[Octave; LEVELS]]) -> [Octave; LEVELS] {
+    let mut level = 0;
+    [(); LEVELS].map(|()| {
+        let index = level;
+        level += 1;
+        let mut average =
+            Octave { samples: 1 << (index & 63), differences: 0, variance: 0.0, white_gain: 0.0 };
+        let mut total = 0.0;
+        for octave in axes.iter().filter_map(|axis| axis.get(index)) {
+            let n = octave.differences as f64;
+            total += n;
+            average.differences = average.differences.saturating_add(octave.differences);
+            average.variance += n * octave.variance;
+            average.white_gain += n * octave.white_gain;
+        }
+        if total > 0.0 {
+            average.variance /= total;
+            average.white_gain /= total;
+        } else {
+            average.white_gain = 1.0;
+        }
+        average.differences =
+            average.differences.checked_div(axes.len() as u64).unwrap_or_default();
+        average
+    })
+}
+
+/// Equivalent degrees of freedom of an octave under the noise that was fitted (white noise where
+/// nothing was).
+#[must_use]
+pub fn fitted_edf(octave: &Octave, sampling: Sampling, fit: &NoiseFit) -> f64 {
+    let estimate = |p: Parameter| match p {
+        Parameter::Observable { value, .. } => value,
+        Parameter::NotObservable { .. } => 0.0,
+    };
+    let (n, k) = (estimate(fit.noise_density), estimate(fit.random_walk));
+    let ratio = if n > 0.0 {
+        k / n
+    } else if k > 0.0 {
+        1e9 / sampling.tau0_s
+    } else {
+        0.0
+    };
+    let records = f64::from(sampling.records.max(1));
+    records * Likelihood { octaves: &[], sampling, from: 0, without: None }.degrees(octave, ratio)
+}
+
+/// A point of the search: ln(K/N), and the likelihood there.
+#[derive(Clone, Copy)]
+struct Point {
+    x: f64,
+    at: AtRatio,
+}
+
+/// The minimum over ln(K/N) in low…high by golden section.
+fn refine(likelihood: &Likelihood, mut low: f64, mut high: f64) -> Point {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let point = |x| Point { x, at: likelihood.at(x) };
+    let mut a = point(high - GOLDEN * (high - low));
+    let mut b = point(low + GOLDEN * (high - low));
+    while high - low > 2e-4 {
+        if a.at.minimum < b.at.minimum {
+            high = b.x;
+            b = a;
+            a = point(high - GOLDEN * (high - low));
+        } else {
+            low = a.x;
+            a = b;
+            b = point(low + GOLDEN * (high - low));
+        }
+    }
+    if a.at.minimum < b.at.minimum { a } else { b }
+}
+
+/// The best ratio in the whole range.
+fn best(likelihood: &Likelihood, (low, high): (f64, f64)) -> Point {
+    let mut best = Point { x: low, at: likelihood.at(low) };
+    let steps = libm::ceil((high - low) / COARSE).clamp(1.0, 200.0);
+    for i in 1..=steps as u32 {
+        let x = low + (high - low) * f64::from(i) / steps;
+        let at = likelihood.at(x);
+        if at.minimum < best.at.minimum {
+            best = Point { x, at };
+        }
+    }
+    refine(likelihood, (best.x - COARSE).max(low), (best.x + COARSE).min(high))
+}
+
+/// How long the record is, in seconds, missing samples not counted.
+fn span(likelihood: &Likelihood) -> f64 {
+    likelihood.octaves.first().map_or(0.0, |o| o.differences as f64 + 1.0)
+        * likelihood.sampling.tau0_s
+}
+
+/// Looks for short octaves that contradict the longer ones.
+fn contradiction(all: &Likelihood) -> Option<Contradiction> {
+    let span = span(all);
+    let start = all.octaves.iter().position(|o| all.tau(o) * SCAN_FROM * 2.0 > span)?;
+    let mut likelihood = Likelihood { from: start, ..*all };
+    let mut longer = best(&likelihood, likelihood.range()?);
+    for octave in (0..start).rev() {
+        likelihood.from = octave;
+        let with = nearby(&likelihood, &longer)?;
+        if contradicts(&with, &longer) {
+            // An outlier, or the first of many? The next shorter octave says.
+            let sigmas = libm::sqrt(with.at.residual - longer.at.residual);
+            let shorter =
+                Likelihood { from: octave.saturating_sub(1), without: Some(octave), ..likelihood };
+            if octave == 0 || contradicts(&nearby(&shorter, &longer)?, &longer) {
+                return Some(Contradiction { octave, sigmas });
+            }
+            likelihood.without = Some(octave);
+        } else {
+            longer = with;
+        }
+    }
+    None
+}
+
+/// Whether one more octave is further than 4 standard deviations from the fit without it: what a
+/// Gaussian datum adds to the sum of squares is its standardised residual, squared.
+fn contradicts(with: &Point, without: &Point) -> bool {
+    with.at.residual - without.at.residual > CONTRADICTS
+}
+
+/// The minimum near a neighbouring fit, or wherever it is if that fit did not know better.
+fn nearby(likelihood: &Likelihood, neighbour: &Point) -> Option<Point> {
+    let (low, high) = likelihood.range()?;
+    let from = (neighbour.x - COARSE).clamp(low, high);
+    let point = refine(likelihood, from, (neighbour.x + COARSE).clamp(low, high));
+    let at_the_edge = (point.x - neighbour.x).abs() > 0.9 * COARSE;
+    Some(if at_the_edge { best(likelihood, (low, high)) } else { point })
+}
+
+fn fit(likelihood: &Likelihood) -> NoiseFit {
+    let nothing = Parameter::NotObservable { upper90: f64::INFINITY, record_at_least_s: 0.0 };
+    let fit =
+        NoiseFit { noise_density: nothing, random_walk: nothing, used: None, contradiction: None };
+    let (Some(range), Some((first, _)), Some((last, _))) =
+        (likelihood.range(), likelihood.usable().next(), likelihood.usable().next_back())
+    else {
+        return fit;
+    };
+    if !(likelihood.sampling.tau0_s > 0.0 && likelihood.sampling.tau0_s < f64::MAX) {
+        return fit;
+    }
+    let best = best(likelihood, range);
+    NoiseFit {
+        noise_density: noise_density(likelihood, range, best),
+        random_walk: random_walk(likelihood, range, best),
+        used: Some((first, last)),
+        contradiction: None,
+    }
+}
+
+/// ln K² that goes with a ratio.
+fn log_walk(point: &Point) -> f64 {
+    2.0 * point.x + point.at.log_white
+}
+
+/// The likelihood and its derivatives over x = ln(K/N) at a point.
+struct Slopes {
+    /// dP/dx and ½ d²P/dx² of −2 ln likelihood at the best N.
+    first: f64,
+    half_second: f64,
+    /// d(ln N²)/dx of the best N.
+    log_white: f64,
+}
+
+fn slopes(likelihood: &Likelihood, point: &Point) -> Slopes {
+    let (before, after) = (likelihood.at(point.x - DELTA), likelihood.at(point.x + DELTA));
+    Slopes {
+        first: (after.minimum - before.minimum) / (2.0 * DELTA),
+        half_second: (after.minimum - 2.0 * point.at.minimum + before.minimum)
+            / (2.0 * DELTA * DELTA),
+        log_white: (after.log_white - before.log_white) / (2.0 * DELTA),
+    }
+}
+
+/// −2 ln likelihood of the K that goes with this point, at the N that suits that K best, relative
+/// to the overall best: P(x) less what moving along constant K gains, to second order.
+fn deviance_of_walk(likelihood: &Likelihood, point: &Point, best: &Point) -> f64 {
+    let s = slopes(likelihood, point);
+    let along = 2.0 + s.log_white;
+    let curvature = s.half_second.max(0.0) + point.at.information * along * along;
+    let gain = if curvature > 0.0 { s.first * s.first / (4.0 * curvature) } else { 0.0 };
+    (point.at.minimum - gain - best.at.minimum).max(0.0)
+}
+
+/// The point between `best` and `end` where the deviance of K reaches `level`, or `end`.
+fn walk_bound(likelihood: &Likelihood, best: &Point, end: f64, level: f64) -> Point {
+    let point = |x| Point { x, at: likelihood.at(x) };
+    // Outward in growing steps, then bisection.
+    let direction = if end > best.x { 1.0 } else { -1.0 };
+    let (mut inside, mut step) = (best.x, 0.1);
+    let mut outside = loop {
+        let x = inside + direction * step;
+        if (end - x) * direction <= 0.0 {
+            let last = point(end);
+            if deviance_of_walk(likelihood, &last, best) < level {
+                return last;
+            }
+            break end;
+        }
+        if deviance_of_walk(likelihood, &point(x), best) > level {
+            break x;
+        }
+        inside = x;
+        step *= 2.0;
+    };
+    while (outside - inside).abs() > 2e-3 {
+        let middle = 0.5 * (inside + outside);
+        if deviance_of_walk(likelihood, &point(middle), best) > level {
+            outside = middle;
+        } else {
+            inside = middle;
+        }
+    }
+    point(0.5 * (inside + outside))
+}
+
+fn random_walk(likelihood: &Likelihood, (low, high): (f64, f64), best: Point) -> Parameter {
+    let value = |point: &Point| libm::exp(0.5 * log_walk(point));
+    if likelihood.at(low).minimum - best.at.minimum > UPPER {
+        let estimate = value(&best);
+        let low90 = value(&walk_bound(likelihood, &best, low, INTERVAL)).min(estimate);
+        let high90 = value(&walk_bound(likelihood, &best, high, INTERVAL)).max(estimate);
+        let sd = (high90 - low90) / (2.0 * libm::sqrt(INTERVAL));
+        return Parameter::Observable { value: estimate, sd, low90, high90 };
+    }
+    let bound = walk_bound(likelihood, &best, high, UPPER);
+    let span = span(likelihood);
+    if bound.x >= high {
+        return Parameter::NotObservable { upper90: f64::INFINITY, record_at_least_s: 2.0 * span };
+    }
+    // sd(ln K) = √(2N/(K T)) must fall to a third before K can be told from zero; K is at most
+    // the bound.
+    Parameter::NotObservable {
+        upper90: value(&bound),
+        record_at_least_s: (18.0 * libm::exp(-bound.x)).max(2.0 * span),
+    }
+}
+
+fn noise_density(likelihood: &Likelihood, (low, high): (f64, f64), best: Point) -> Parameter {
+    let against_zero = likelihood.at(high).minimum - best.at.minimum;
+    if against_zero > UPPER {
+        // ln N is Gaussian to a good approximation: its information, less what is spent on K/N.
+        let s = slopes(likelihood, &best);
+        let ratio = s.half_second.max(0.0);
+        let shared = best.at.information * s.log_white * s.log_white;
+        let information = if ratio > 0.0 {
+            best.at.information * ratio / (ratio + shared)
+        } else {
+            best.at.information
+        };
+        let sd_log = 0.5 / libm::sqrt(information);
+        let value = libm::exp(0.5 * best.at.log_white);
+        let spread = libm::exp(libm::sqrt(INTERVAL) * sd_log);
+        return Parameter::Observable {
+            value,
+            sd: value * sd_log,
+            low90: value / spread,
+            high90: value * spread,
+        };
+    }
+    // The largest N among the ratios that cannot be excluded: the one with least walk.
+    let mut least = best.x;
+    while least > low && likelihood.at(least).minimum - best.at.minimum < UPPER {
+        least -= 0.25;
+    }
+    let at = likelihood.at(least.max(low));
+    let log_upper = at.log_white + libm::sqrt(UPPER / at.information);
+    Parameter::NotObservable {
+        upper90: libm::exp(0.5 * log_upper),
+        record_at_least_s: span(likelihood) * (UPPER / against_zero.max(0.01)).max(2.0),
+    }
+}
+
+#[cfg(test)]
+#[path = "fit_tests.rs"]
+mod tests;
