@@ -275,7 +275,7 @@ fn fit(likelihood: &Likelihood) -> NoiseFit {
     else {
         return fit;
     };
-    if !(likelihood.sampling.tau0_s > 0.0 && likelihood.sampling.tau0_s < f64::MAX) {
+    if !(1e-12..1e12).contains(&likelihood.sampling.tau0_s) {
         return fit;
     }
     let best = best(likelihood, range);

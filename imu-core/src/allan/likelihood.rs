@@ -147,8 +147,8 @@ impl Likelihood<'_> {
         self.octaves.iter().enumerate().skip(self.from).filter(move |&(index, o)| {
             Some(index) != self.without
                 && o.differences >= enough
-                && o.variance > f64::MIN_POSITIVE
-                && o.variance < f64::MAX
+                && o.variance > 1e-200
+                && o.variance < 1e200 // far from where squares of it are lost
         })
     }
 

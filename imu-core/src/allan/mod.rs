@@ -2,12 +2,14 @@
 //! explains them.
 
 mod bytes;
+mod carry;
 mod chi_square;
 mod correlation;
 mod edf;
 mod extend;
 mod fit;
 mod ladder;
+mod learn;
 mod likelihood;
 mod reading;
 mod total;
