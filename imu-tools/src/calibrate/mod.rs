@@ -1,3 +1,284 @@
 //! From samples to noise parameters.
+//!
+//! A recording is read on one thread and computed on another, block by block, in memory that does
+//! not grow: stamps go to a grid ([`crate::recording::Timeline`]), values into a ladder of Allan
+//! variances, and at the end `imu_core::allan` fits N and K to it.
+//!
+//! ```
+//! use imu_tools::calibrate::{Options, calibrate};
+//! use imu_tools::scene::{Preset, Scene, Simulator};
+//!
+//! let scene = Scene { duration_ns: 600_000_000_000, ..Preset::Mid.scene() };
+//! let source = Box::new(Simulator::new(&scene)?);
+//! let calibration = calibrate(source, "simulated", &Options::default(), |_| {})?;
+//! let gyroscope = calibration.gyroscope.unwrap();
+//! assert_eq!(gyroscope.stamps.samples, 120_000);
+//! # Ok::<(), imu_tools::error::Error>(())
+//! ```
 
 pub mod batch;
+mod gravity;
+mod sensor;
+
+use std::sync::mpsc::sync_channel;
+
+use imu_core::allan::{Contradiction, Octave, Parameter};
+
+use crate::error::Error;
+use crate::recording::{Block, Note, Sample, Source, Summary};
+use sensor::Pipeline;
+
+/// Octaves of τ that a ladder holds here: at 1 kHz the longest is 12 days.
+pub const LEVELS: usize = 31;
+
+/// What to leave out, and how to estimate.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Start this many seconds after the first sample.
+    pub from_s: Option<f64>,
+    /// End this many seconds after the first sample.
+    pub to_s: Option<f64>,
+    /// The user has said what unit the accelerometer is in: gravity that contradicts it is only
+    /// worth a warning.
+    pub unit_is_given: bool,
+}
+
+/// What a recording says about its IMU.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// The recording's name.
+    pub path: String,
+    /// Length of the longer sensor's record, seconds.
+    pub span_s: f64,
+    /// What was taken for granted.
+    pub remarks: Vec<String>,
+    /// What is wrong with the recording or its result.
+    pub warnings: Vec<String>,
+    /// Angular rate, rad/s.
+    pub gyroscope: Option<SensorNoise>,
+    /// Specific force, m/s².
+    pub accelerometer: Option<SensorNoise>,
+}
+
+/// Which of the two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensorKind {
+    /// Angular rate.
+    Gyroscope,
+    /// Specific force.
+    Accelerometer,
+}
+
+impl SensorKind {
+    /// `gyroscope` or `accelerometer`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Gyroscope => "gyroscope",
+            Self::Accelerometer => "accelerometer",
+        }
+    }
+}
+
+/// The noise of one sensor.
+#[derive(Clone, Debug)]
+pub struct SensorNoise {
+    /// Which one.
+    pub kind: SensorKind,
+    /// Topic or columns that it was read from.
+    pub topic: String,
+    /// What its stamps are like.
+    pub stamps: Summary,
+    /// Samples that counted as missing: not finite, or absurdly far from the others.
+    pub rejected: u64,
+    /// Mean of each axis, in the sensor's unit.
+    pub mean: [f64; 3],
+    /// x, y and z on their own.
+    pub axes: [AxisNoise; 3],
+    /// All axes by their joint likelihood.
+    pub pooled: AxisNoise,
+    /// Shortest and longest τ that decided, s.
+    pub tau_used_s: Option<(f64, f64)>,
+    /// Why shorter τ did not: they contradict the longer ones.
+    pub contradiction: Option<Contradiction>,
+    /// The variance at every τ that has one, shortest first.
+    pub deviation: Vec<Deviation>,
+}
+
+/// N and K of one axis, or of all together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisNoise {
+    /// N: angle or velocity random walk, unit/√Hz.
+    pub noise_density: Parameter,
+    /// K: random walk of the bias, unit/s/√Hz.
+    pub random_walk: Parameter,
+}
+
+/// The Allan deviations at one averaging time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Averaging time, s.
+    pub tau_s: f64,
+    /// x, y, z.
+    pub octaves: [Octave; 3],
+    /// Equivalent degrees of freedom of each, under the noise that was fitted.
+    pub edf: [f64; 3],
+}
+
+/// How far a calibration has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Bytes read of the recording.
+    pub bytes: u64,
+    /// Samples taken of the sensor that has more.
+    pub samples: u64,
+}
+
+/// Calibrates the recording that `source` reads; `path` names it in messages, and `progress` is
+/// told now and then.
+///
+/// # Errors
+/// What the source says when it cannot be read; too few samples; gravity in another unit.
+pub fn calibrate(
+    source: Box<dyn Source>,
+    path: &str,
+    options: &Options,
+    mut progress: impl FnMut(Progress),
+) -> Result<Calibration, Error> {
+    let mut window = Window::new(options);
+    let mut gyroscope = Pipeline::new(SensorKind::Gyroscope);
+    let mut accelerometer = Pipeline::new(SensorKind::Accelerometer);
+    let mut samples = 0;
+    let mut source = read_ahead(source, |block, bytes| {
+        window.open(block);
+        gyroscope.push(window.cut(&block.gyroscope));
+        accelerometer.push(window.cut(&block.accelerometer));
+        samples += block.gyroscope.len().max(block.accelerometer.len()) as u64;
+        progress(Progress { bytes, samples });
+    })?;
+
+    let (mut remarks, mut warnings) = (Vec::new(), Vec::new());
+    for note in source.take_notes() {
+        match note {
+            Note::Info(text) => remarks.push(text),
+            Note::Warning(text) => warnings.push(text),
+        }
+    }
+    let gyroscope = gyroscope.finish(source.gyroscope());
+    let accelerometer = accelerometer.finish(source.accelerometer());
+    let most = [&gyroscope, &accelerometer]
+        .iter()
+        .filter_map(|sensor| sensor.as_ref().map(|s| s.stamps.samples - s.rejected))
+        .max()
+        .unwrap_or(0);
+    if most < FEWEST_SAMPLES {
+        return Err(too_few(path, most, options));
+    }
+    if let Some(sensor) = &accelerometer {
+        match gravity::check(sensor.mean) {
+            gravity::Verdict::Plausible => {}
+            gravity::Verdict::OtherUnit(sentence) if !options.unit_is_given => {
+                return Err(Error::data(format!("{path}: {sentence}")));
+            }
+            gravity::Verdict::OtherUnit(sentence) | gravity::Verdict::Odd(sentence) => {
+                warnings.push(sentence);
+            }
+        }
+    }
+    for sensor in [&gyroscope, &accelerometer].into_iter().flatten() {
+        warnings.extend(sensor.warnings());
+    }
+    let span = |sensor: &Option<SensorNoise>| sensor.as_ref().map_or(0.0, |s| s.stamps.span_s);
+    Ok(Calibration {
+        path: path.to_owned(),
+        span_s: span(&gyroscope).max(span(&accelerometer)),
+        remarks,
+        warnings,
+        gyroscope,
+        accelerometer,
+    })
+}
+
+/// Fewer good samples than this are no recording: not even N has an interval worth the name.
+const FEWEST_SAMPLES: u64 = 32;
+
+fn too_few(path: &str, samples: u64, options: &Options) -> Error {
+    let cut = options.from_s.is_some() || options.to_s.is_some();
+    let within = if cut { " between --from and --to" } else { "" };
+    Error::data(format!(
+        "{path} has only {samples} usable samples{within}: record the sensor at rest for at least \
+         a minute (for the random walk of the bias: hours)"
+    ))
+}
+
+/// Reads blocks on a thread of its own, at most a few ahead, and hands them to `take` in order.
+/// Blocks are used again, so memory does not grow.
+fn read_ahead(
+    mut source: Box<dyn Source>,
+    mut take: impl FnMut(&Block, u64),
+) -> Result<Box<dyn Source>, Error> {
+    const AHEAD: usize = 4;
+    std::thread::scope(|scope| {
+        let (full, filled) = sync_channel::<(Block, u64)>(AHEAD);
+        let (used, empty) = sync_channel::<Block>(AHEAD + 2);
+        let reader = scope.spawn(move || {
+            loop {
+                let mut block = empty.try_recv().unwrap_or_default();
+                if !source.next_block(&mut block)? {
+                    return Ok(source);
+                }
+                let bytes = source.bytes_read();
+                if full.send((block, bytes)).is_err() {
+                    return Ok(source); // nobody listens any more
+                }
+            }
+        });
+        for (block, bytes) in filled {
+            take(&block, bytes);
+            // The reader may have ended: then the block is simply dropped.
+            let _ = used.try_send(block);
+        }
+        reader.join().unwrap_or_else(|_| Err(Error::data("the reader stopped unexpectedly")))
+    })
+}
+
+/// The part of a recording between --from and --to.
+struct Window {
+    from_ns: i64,
+    to_ns: i64,
+    first: Option<i64>,
+}
+
+impl Window {
+    fn new(options: &Options) -> Self {
+        let ns = |s: f64| (s * 1e9) as i64; // saturates
+        Self {
+            from_ns: options.from_s.map_or(i64::MIN, ns),
+            to_ns: options.to_s.map_or(i64::MAX, ns),
+            first: None,
+        }
+    }
+
+    /// Notes where the recording begins.
+    fn open(&mut self, block: &Block) {
+        if self.first.is_none() {
+            let first = [block.gyroscope.first(), block.accelerometer.first()];
+            self.first = first.into_iter().flatten().map(|sample| sample.stamp_ns).min();
+        }
+    }
+
+    /// The samples of a block that lie within.
+    fn cut<'a>(&self, samples: &'a [Sample]) -> &'a [Sample] {
+        let Some(first) = self.first else { return samples };
+        if self.from_ns == i64::MIN && self.to_ns == i64::MAX {
+            return samples;
+        }
+        let within = |sample: &Sample| {
+            let at = sample.stamp_ns.saturating_sub(first);
+            at >= self.from_ns && at <= self.to_ns
+        };
+        let start = samples.iter().position(within).unwrap_or(samples.len());
+        let end = samples.iter().rposition(within).map_or(start, |last| last + 1);
+        samples.get(start..end).unwrap_or_default()
+    }
+}

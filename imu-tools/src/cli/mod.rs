@@ -4,11 +4,13 @@
 //! with exit code 2 for a mistake on the command line and 1 for everything else. A reader that
 //! closes the pipe early (`imu … | head`) ends the program quietly.
 
+mod calibrate;
 mod progress;
 mod simulate;
 
 use std::ffi::OsString;
-use std::io;
+use std::io::{self, Write as _};
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -25,6 +27,7 @@ struct Imu {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Calibrate(calibrate::Calibrate),
     Simulate(simulate::Simulate),
 }
 
@@ -40,6 +43,7 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(refusal) => return refuse(&refusal),
     };
     let result = match command {
+        Command::Calibrate(calibrate) => calibrate.run(),
         Command::Simulate(simulate) => simulate.run(),
     };
     match result {
@@ -52,6 +56,13 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// Prints a result on the standard output.
+fn print(text: &str) -> Result<(), Error> {
+    let mut stdout = io::stdout().lock();
+    let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
+    written.map_err(|source| Error::io("write", Path::new("-"), source))
 }
 
 /// Prints clap's help as it is, and its complaints as one sentence.

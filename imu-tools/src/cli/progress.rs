@@ -10,3 +10,18 @@ pub(super) fn bar(total: u64, doing: &'static str) -> ProgressBar {
     let clear = ProgressFinish::AndClear;
     ProgressBar::new(total).with_style(style).with_message(doing).with_finish(clear)
 }
+
+/// The same for bytes read; a spinner where their number is not known.
+pub(super) fn bytes(total: Option<u64>, doing: &'static str) -> ProgressBar {
+    let template = match total {
+        Some(_) => "{msg} {wide_bar} {bytes}/{total_bytes} {bytes_per_sec} {eta}",
+        None => "{msg} {spinner} {bytes} {bytes_per_sec}",
+    };
+    let style =
+        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let bar = match total {
+        Some(total) => ProgressBar::new(total),
+        None => ProgressBar::new_spinner(),
+    };
+    bar.with_style(style).with_message(doing).with_finish(ProgressFinish::AndClear)
+}

@@ -1,0 +1,240 @@
+//! One sensor's way from samples to noise: stamps to a grid, values into a ladder, a fit.
+
+use imu_core::allan::{
+    AllanLadder, Difference, Octave, Parameter, Sampling, average_octaves, fit_noise,
+    fit_noise_from, fitted_edf,
+};
+
+use super::{AxisNoise, Deviation, LEVELS, SensorKind, SensorNoise};
+use crate::recording::{Event, Sample, Summary, Timeline};
+
+/// Windows a τ: statistically as good as full overlap.
+const WINDOWS: usize = 4;
+
+type SensorLadder = AllanLadder<f64, 3, LEVELS, WINDOWS>;
+
+/// Takes the samples of one sensor as they come.
+pub(super) struct Pipeline {
+    kind: SensorKind,
+    timeline: Timeline,
+    taken: Taken,
+}
+
+/// What becomes of values on the grid.
+struct Taken {
+    kind: SensorKind,
+    /// Begun when the first values show what is normal.
+    ladder: Option<SensorLadder>,
+    /// Σ of values less the first reference, and how many.
+    sum: [f64; 3],
+    offset: [f64; 3],
+    count: u64,
+}
+
+impl Pipeline {
+    pub(super) fn new(kind: SensorKind) -> Self {
+        let taken = Taken { kind, ladder: None, sum: [0.0; 3], offset: [0.0; 3], count: 0 };
+        Self { kind, timeline: Timeline::new(), taken }
+    }
+
+    pub(super) fn push(&mut self, samples: &[Sample]) {
+        let taken = &mut self.taken;
+        self.timeline.push(samples, |event| taken.take(event));
+    }
+
+    /// The noise, or nothing if there was not a sample.
+    pub(super) fn finish(self, topic: &str) -> Option<SensorNoise> {
+        let Self { kind, timeline, mut taken } = self;
+        let stamps = timeline.finish(|event| taken.take(event));
+        let ladder = taken.ladder?;
+        let count = taken.count.max(1) as f64;
+        let mut mean = taken.offset;
+        for (mean, sum) in mean.iter_mut().zip(taken.sum) {
+            *mean += sum / count;
+        }
+        Some(noise(kind, topic, stamps, &ladder, mean))
+    }
+}
+
+impl Taken {
+    fn take(&mut self, event: Event<'_>) {
+        match event {
+            Event::Values(values) => {
+                let ladder = self.ladder.get_or_insert_with(|| {
+                    let (ladder, reference) = begin(self.kind, values);
+                    self.offset = reference;
+                    ladder
+                });
+                ladder.extend(values);
+                for value in values {
+                    if value.iter().all(|x| x.abs() < 1e6) {
+                        for ((sum, x), offset) in self.sum.iter_mut().zip(value).zip(self.offset) {
+                            *sum += x - offset;
+                        }
+                        self.count += 1;
+                    }
+                }
+            }
+            Event::Missing(n) => {
+                if let Some(ladder) = &mut self.ladder {
+                    ladder.missing(n);
+                }
+            }
+            Event::Restart => {
+                if let Some(ladder) = &mut self.ladder {
+                    ladder.restart();
+                }
+            }
+        }
+    }
+}
+
+/// A ladder for values like these, and its reference: their median, and as a bound a thousand times
+/// their median absolute deviation. Where that is zero, or values are few, no sensor's range is
+/// beyond 1000 rad/s or 10 km/s².
+fn begin(kind: SensorKind, values: &[[f64; 3]]) -> (SensorLadder, [f64; 3]) {
+    let range = match kind {
+        SensorKind::Gyroscope => 1e3,
+        SensorKind::Accelerometer => 1e4,
+    };
+    let (mut reference, mut bound) = ([0.0; 3], [range; 3]);
+    for (axis, (reference, bound)) in reference.iter_mut().zip(&mut bound).enumerate() {
+        let column = || values.iter().map(|row| row[axis]).filter(|x| x.is_finite());
+        *reference = median(column().collect());
+        let deviation = median(column().map(|x| (x - *reference).abs()).collect());
+        if deviation > 0.0 && values.len() >= 64 {
+            *bound = (1e3 * deviation).min(SensorLadder::limit());
+        }
+    }
+    let ladder = SensorLadder::with_reference(reference, bound).unwrap_or_default();
+    (ladder, reference)
+}
+
+/// The middle value; 0 of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// Reads the ladder and fits it.
+fn noise(
+    kind: SensorKind,
+    topic: &str,
+    stamps: Summary,
+    ladder: &SensorLadder,
+    mean: [f64; 3],
+) -> SensorNoise {
+    let tau0_s = if stamps.rate_hz > 0.0 { 1.0 / stamps.rate_hz } else { 0.0 };
+    let sampling =
+        Sampling { tau0_s, difference: Difference::Allan, windows: WINDOWS as u8, records: 1 };
+    let octaves = [0, 1, 2].map(|axis| ladder.octaves(axis));
+
+    // One axis that shows a low-pass filter speaks for all: they share the filter.
+    let contradiction = octaves
+        .iter()
+        .filter_map(|axis| fit_noise(axis, sampling).contradiction)
+        .max_by_key(|c| c.octave);
+    let from = contradiction.map_or(0, |c| c.octave + 1);
+    let fits = octaves.map(|axis| fit_noise_from(&axis, sampling, from));
+    let pooled =
+        fit_noise_from(&average_octaves(&octaves), Sampling { records: 3, ..sampling }, from);
+
+    let tau = |octave: &Octave| octave.samples as f64 * tau0_s;
+    let deviation = (0..LEVELS)
+        .map(|level| octaves.map(|axis| axis[level]))
+        .take_while(|octaves| octaves.iter().any(|o| o.differences > 0))
+        .map(|octaves| {
+            let mut edf = [0.0; 3];
+            for ((edf, octave), fit) in edf.iter_mut().zip(&octaves).zip(&fits) {
+                *edf = fitted_edf(octave, sampling, fit);
+            }
+            Deviation { tau_s: tau(&octaves[0]), octaves, edf }
+        })
+        .collect::<Vec<_>>();
+    let at = |level: usize| octaves[0].get(level).map_or(0.0, tau);
+    SensorNoise {
+        kind,
+        topic: topic.to_owned(),
+        stamps,
+        rejected: ladder.rejected_samples(),
+        mean,
+        axes: fits
+            .map(|f| AxisNoise { noise_density: f.noise_density, random_walk: f.random_walk }),
+        pooled: AxisNoise { noise_density: pooled.noise_density, random_walk: pooled.random_walk },
+        tau_used_s: pooled.used.map(|(first, last)| (at(first), at(last))),
+        contradiction,
+        deviation,
+    }
+}
+
+impl SensorNoise {
+    /// What its user should know before believing it.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        let name = self.kind.name();
+        let mut warnings = Vec::new();
+        if let Some(contradiction) = self.contradiction {
+            let longest = self.deviation.get(contradiction.octave).map_or(0.0, |d| d.tau_s);
+            warnings.push(format!(
+                "{name}: averaging times up to {longest:.3} s contradict the longer ones by {:.0} \
+                 standard deviations (a low-pass filter in the sensor does that) and decide nothing",
+                contradiction.sigmas
+            ));
+        }
+        if self.rejected > 0 {
+            warnings.push(format!(
+                "{name}: {} samples are not finite or absurdly large and count as missing",
+                self.rejected
+            ));
+        }
+        let Summary { gap_count, missing, duplicates, backward, restarts, .. } = self.stamps;
+        if gap_count > 0 {
+            warnings.push(format!("{name}: {missing} samples are missing in {gap_count} gaps"));
+        }
+        if duplicates > 0 {
+            warnings.push(format!("{name}: {duplicates} stamps are the same as the one before"));
+        }
+        if backward > 0 {
+            warnings.push(format!("{name}: {backward} stamps are earlier than the one before"));
+        }
+        if restarts > 0 {
+            warnings
+                .push(format!("{name}: the clock was set back, or stood still, {restarts} times"));
+        }
+        if let Parameter::NotObservable { record_at_least_s, .. } = self.pooled.random_walk {
+            warnings.push(format!(
+                "{name}: the record is too short to show a random walk of the bias; record at least \
+                 {:.1} h",
+                record_at_least_s / 3600.0
+            ));
+        }
+        warnings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(vec![]), 0.0);
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
+    }
+
+    #[test]
+    fn a_glitch_at_the_start_is_not_the_reference() {
+        let mut values = vec![[0.0, 0.01, 9.8]; 100];
+        for (k, row) in values.iter_mut().enumerate() {
+            row[2] += 1e-3 * (k % 7) as f64;
+        }
+        values[0] = [1e4; 3];
+        let (ladder, reference) = begin(SensorKind::Accelerometer, &values);
+        assert!((reference[2] - 9.803).abs() < 1e-9);
+        let mut ladder = ladder;
+        ladder.extend(&values);
+        assert_eq!(ladder.rejected_samples(), 1);
+    }
+}

@@ -1,0 +1,138 @@
+//! `imu calibrate`: a recording into the noise parameters of its IMU.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::progress;
+use crate::calibrate::{Calibration, Options, calibrate};
+use crate::error::Error;
+use crate::output::Output;
+use crate::recording::{self, ForceUnit, RateUnit, ReadOptions, TimeUnit};
+use crate::report;
+
+const EXAMPLES: &str = "\
+Examples:
+  imu calibrate still.bag
+      a table: angle and velocity random walk N, random walk of the bias K, intervals, units
+  imu calibrate still.bag -o out
+      also out/imu.yaml (Kalibr's keys) and out/allan.csv
+  imu calibrate log.csv --columns t,ax,ay,az,gx,gy,gz --gyro-unit deg/s --accel-unit g --json
+  imu calibrate still.bag --from 120 --to 14000
+      without the time when a hand was still on the sensor
+  imu simulate high --duration 1h -o - | imu calibrate -
+
+Record the sensor at rest, warmed up, on something solid: a minute shows N, hours show K.";
+
+/// Estimate an IMU's noise from a recording of it at rest.
+///
+/// Reads ROS 1 bags and CSV files (also EuRoC's data.csv), finds the IMU in them, and fits white
+/// noise N and random walk K to the Allan variance of every axis.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Calibrate {
+    /// The recording: a .bag or .csv file, or - for a pipe
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Write imu.yaml and allan.csv into this folder
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Start this many seconds after the first sample
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    from: Option<f64>,
+    /// End this many seconds after the first sample
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    to: Option<f64>,
+    /// The topic in a bag that has several (imu and /imu are the same)
+    #[arg(long, value_name = "TOPIC")]
+    topic: Option<String>,
+    /// Use the time at which the bag recorded a message, not the one in its header
+    #[arg(long)]
+    bag_time: bool,
+    /// Columns of a CSV: t, gx, gy, gz, ax, ay, az and - for one to pass over
+    #[arg(long, value_name = "LIST")]
+    columns: Option<String>,
+    /// Unit of angular rate: rad/s, deg/s, ...
+    #[arg(long, value_name = "UNIT")]
+    gyro_unit: Option<RateUnit>,
+    /// Unit of specific force: m/s^2, g, mg
+    #[arg(long, value_name = "UNIT")]
+    accel_unit: Option<ForceUnit>,
+    /// Unit of time in a CSV: s, ms, us, ns
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<TimeUnit>,
+}
+
+impl Calibrate {
+    pub(super) fn run(self) -> Result<(), Error> {
+        let options = self.options()?;
+        let source = recording::open(&self.file, &self.read_options())?;
+        let bar = progress::bytes(source.bytes_total(), "reading");
+        let name = match self.file.to_str() {
+            Some("-") => "the pipe".to_owned(),
+            _ => self.file.display().to_string(),
+        };
+        let calibration = calibrate(source, &name, &options, |at| bar.set_position(at.bytes))?;
+        bar.finish_and_clear();
+        if let Some(folder) = &self.output {
+            write_into(folder, &calibration)?;
+        }
+        if self.json {
+            return super::print(&format!("{:#}\n", report::json::calibration(&calibration)));
+        }
+        for remark in &calibration.remarks {
+            eprintln!("imu: {remark}");
+        }
+        for warning in &calibration.warnings {
+            eprintln!("imu: warning: {warning}");
+        }
+        super::print(&report::table::calibration(&calibration))
+    }
+
+    fn options(&self) -> Result<Options, Error> {
+        for (flag, value) in [("--from", self.from), ("--to", self.to)] {
+            if value.is_some_and(|s| !s.is_finite() || s < 0.0) {
+                return Err(Error::usage(format!(
+                    "{flag} wants seconds after the first sample, 0 or more"
+                )));
+            }
+        }
+        if let (Some(from), Some(to)) = (self.from, self.to)
+            && from >= to
+        {
+            return Err(Error::usage(format!("--from {from} is not before --to {to}")));
+        }
+        Ok(Options { from_s: self.from, to_s: self.to, unit_is_given: self.accel_unit.is_some() })
+    }
+
+    fn read_options(&self) -> ReadOptions {
+        ReadOptions {
+            topic: self.topic.clone(),
+            bag_time: self.bag_time,
+            columns: self.columns.clone(),
+            gyro_unit: self.gyro_unit,
+            accel_unit: self.accel_unit,
+            time_unit: self.time_unit,
+        }
+    }
+}
+
+/// Writes `imu.yaml` and `allan.csv`, whole or not at all, into a folder that is made if need be.
+pub(super) fn write_into(folder: &Path, calibration: &Calibration) -> Result<(), Error> {
+    std::fs::create_dir_all(folder).map_err(|e| Error::io("make the folder", folder, e))?;
+    let files = [
+        ("imu.yaml", report::yaml::kalibr(calibration)),
+        ("allan.csv", report::csv::deviations(calibration)),
+    ];
+    let mut written = Vec::new();
+    for (name, text) in files {
+        let mut output = Output::create(&folder.join(name))?;
+        output.write(text.as_bytes())?;
+        written.push(output);
+    }
+    // Both are complete before either takes its place.
+    written.into_iter().try_for_each(Output::finish)
+}

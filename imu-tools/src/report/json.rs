@@ -1,0 +1,98 @@
+//! The result for programs, one JSON object.
+//!
+//! A parameter is `{"observable":true,"value","sd","low90","high90","unit"}`, or where the record
+//! cannot show it `{"observable":false,"upper90","record_at_least_s","unit"}`; a sensor that the
+//! recording does not have, and a number that is not known, are `null`.
+
+use imu_core::allan::Parameter;
+use serde_json::{Value, json};
+
+use super::Quantity;
+use crate::calibrate::{AxisNoise, Calibration, SensorKind, SensorNoise};
+
+/// Names of the axes, in order.
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The whole calibration.
+#[must_use]
+pub fn calibration(calibration: &Calibration) -> Value {
+    json!({
+        "recording": {
+            "path": calibration.path,
+            "span_s": calibration.span_s,
+            "remarks": calibration.remarks,
+            "warnings": calibration.warnings,
+        },
+        "gyroscope": calibration.gyroscope.as_ref().map(sensor),
+        "accelerometer": calibration.accelerometer.as_ref().map(sensor),
+    })
+}
+
+fn sensor(sensor: &SensorNoise) -> Value {
+    let stamps = &sensor.stamps;
+    let gaps: Vec<_> =
+        stamps.gaps.iter().map(|g| json!({"at_s": g.at_s, "missing": g.missing})).collect();
+    let axes: Vec<_> = AXES
+        .iter()
+        .zip(&sensor.axes)
+        .map(|(name, axis)| {
+            let mut value = noise(axis, sensor.kind);
+            if let Value::Object(fields) = &mut value {
+                fields.insert("axis".into(), json!(name));
+            }
+            value
+        })
+        .collect();
+    let deviation: Vec<_> = sensor
+        .deviation
+        .iter()
+        .map(|d| {
+            json!({
+                "tau_s": d.tau_s,
+                "adev": d.octaves.map(|o| (o.differences > 0).then(|| o.deviation())),
+                "edf": d.edf,
+            })
+        })
+        .collect();
+    json!({
+        "topic": sensor.topic,
+        "samples": stamps.samples,
+        "rate_hz": stamps.rate_hz,
+        "span_s": stamps.span_s,
+        "gaps": gaps,
+        "gap_count": stamps.gap_count,
+        "missing": stamps.missing,
+        "duplicates": stamps.duplicates,
+        "backward": stamps.backward,
+        "restarts": stamps.restarts,
+        "non_finite": sensor.rejected,
+        "jitter_s": stamps.jitter_s,
+        "mean": sensor.mean,
+        "tau_used_s": sensor.tau_used_s.map(|(first, last)| [first, last]),
+        "axes": axes,
+        "pooled": noise(&sensor.pooled, sensor.kind),
+        "deviation": deviation,
+    })
+}
+
+fn noise(noise: &AxisNoise, kind: SensorKind) -> Value {
+    json!({
+        "noise_density": parameter(noise.noise_density, Quantity::NoiseDensity(kind)),
+        "random_walk": parameter(noise.random_walk, Quantity::RandomWalk(kind)),
+    })
+}
+
+fn parameter(parameter: Parameter, quantity: Quantity) -> Value {
+    let unit = quantity.unit();
+    match parameter {
+        Parameter::Observable { value, sd, low90, high90 } => json!({
+            "observable": true, "value": value, "sd": sd, "low90": low90, "high90": high90,
+            "unit": unit,
+        }),
+        // An infinite bound becomes null.
+        Parameter::NotObservable { upper90, record_at_least_s } => json!({
+            "observable": false, "upper90": upper90, "record_at_least_s": record_at_least_s,
+            "unit": unit,
+        }),
+    }
+}

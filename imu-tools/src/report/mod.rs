@@ -1,0 +1,12 @@
+//! Results for people and for machines: one form a file, no decisions in any of them.
+//!
+//! [`table`] for a terminal, [`json`] for programs, [`yaml`] for Kalibr, [`csv`] for plots. All
+//! write a [`Calibration`](crate::calibrate::Calibration) into text.
+
+pub mod csv;
+pub mod json;
+pub mod table;
+mod units;
+pub mod yaml;
+
+pub use units::{Quantity, Twin};

@@ -1,0 +1,105 @@
+//! The result for a person at a terminal.
+
+use std::fmt::Write as _;
+
+use imu_core::allan::Parameter;
+
+use super::Quantity;
+use super::json::AXES;
+use crate::calibrate::{AxisNoise, Calibration, SensorNoise};
+use crate::scene::display_duration;
+
+/// What was recorded, then N and K of every axis and of all together, each with its 90 % interval
+/// and its datasheet twin.
+#[must_use]
+pub fn calibration(calibration: &Calibration) -> String {
+    let mut text = String::new();
+    for sensor in [&calibration.gyroscope, &calibration.accelerometer].into_iter().flatten() {
+        self::sensor(&mut text, sensor);
+        text.push('\n');
+    }
+    text
+}
+
+fn sensor(text: &mut String, sensor: &SensorNoise) {
+    let stamps = &sensor.stamps;
+    let gaps = match stamps.gap_count {
+        0 => "no gaps".to_owned(),
+        n => format!("{n} gaps ({} samples missing)", stamps.missing),
+    };
+    let _ = writeln!(
+        text,
+        "{} {}: {} samples at {:.3} Hz, {}, {gaps}",
+        sensor.kind.name(),
+        sensor.topic,
+        stamps.samples,
+        stamps.rate_hz,
+        duration(stamps.span_s),
+    );
+    if let Some((first, last)) = sensor.tau_used_s {
+        let _ = writeln!(text, "  averaging times used: {} to {} s", short(first), short(last));
+    }
+    block(text, sensor, Quantity::NoiseDensity(sensor.kind), |axis| axis.noise_density);
+    block(text, sensor, Quantity::RandomWalk(sensor.kind), |axis| axis.random_walk);
+}
+
+fn block(
+    text: &mut String,
+    sensor: &SensorNoise,
+    quantity: Quantity,
+    of: impl Fn(&AxisNoise) -> Parameter,
+) {
+    let twin = quantity.twin();
+    let _ = writeln!(
+        text,
+        "  {:<28}{:>12}    90 % interval                 {}",
+        quantity.name(),
+        quantity.unit(),
+        twin.unit
+    );
+    let rows = AXES.iter().zip(&sensor.axes).chain([(&"all axes", &sensor.pooled)]);
+    for (name, axis) in rows {
+        let _ = match of(axis) {
+            Parameter::Observable { value, low90, high90, .. } => writeln!(
+                text,
+                "    {name:<26}{value:>12.4e}    {low90:.4e} to {high90:.4e}      {}",
+                short(value * twin.per_si)
+            ),
+            Parameter::NotObservable { upper90, record_at_least_s } => writeln!(
+                text,
+                "    {name:<26}not observable: below {upper90:.2e} ({} {}); record at least {}",
+                short(upper90 * twin.per_si),
+                twin.unit,
+                duration(record_at_least_s)
+            ),
+        };
+    }
+}
+
+/// A time as words, to the second.
+pub(super) fn duration(seconds: f64) -> String {
+    display_duration((seconds.clamp(0.0, 1e9).round() * 1e9) as u64)
+}
+
+/// Four significant digits without an exponent, where that is short.
+pub(super) fn short(x: f64) -> String {
+    if !x.is_finite() || x == 0.0 {
+        return format!("{x}");
+    }
+    let digits = (3.0 - x.abs().log10().floor()).clamp(0.0, 12.0) as usize;
+    if x.abs() >= 1e-4 && x.abs() < 1e7 { format!("{x:.digits$}") } else { format!("{x:.3e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn four_digits() {
+        assert_eq!(short(51.5662), "51.57");
+        assert_eq!(short(0.005), "0.005000");
+        assert_eq!(short(1234.5), "1234");
+        assert_eq!(short(3.2e-9), "3.200e-9");
+        assert_eq!(short(f64::INFINITY), "inf");
+    }
+}

@@ -1,0 +1,89 @@
+//! `imu.yaml`: the six keys that Kalibr reads, in continuous-time units, with their intervals.
+
+use std::fmt::Write as _;
+
+use imu_core::allan::Parameter;
+
+use super::Quantity;
+use crate::calibrate::{Calibration, SensorKind, SensorNoise};
+
+/// The file, all axes of a sensor pooled. A parameter that the record cannot show has its upper
+/// 90 % bound for a value (Kalibr wants a number above zero), and says so.
+#[must_use]
+pub fn kalibr(calibration: &Calibration) -> String {
+    let mut text = format!(
+        "# IMU noise for Kalibr, estimated from {} ({:.0} s).\n\
+         # Continuous-time densities; x, y and z pooled. Intervals are of 90 % confidence.\n",
+        one_line(&calibration.path),
+        calibration.span_s
+    );
+    for warning in &calibration.warnings {
+        let _ = writeln!(text, "# Warning: {}", one_line(warning));
+    }
+    text.push('\n');
+    let sensors = [
+        (SensorKind::Accelerometer, &calibration.accelerometer),
+        (SensorKind::Gyroscope, &calibration.gyroscope),
+    ];
+    for (kind, sensor) in sensors {
+        match sensor {
+            Some(sensor) => lines(&mut text, kind, sensor),
+            None => {
+                let _ = writeln!(text, "# No {} in the recording.", kind.name());
+            }
+        }
+    }
+    if let Some(sensor) = calibration.gyroscope.as_ref().or(calibration.accelerometer.as_ref()) {
+        let _ = writeln!(text, "\nrostopic: {}", quoted(&sensor.topic));
+        let _ = writeln!(text, "update_rate: {:.6}  # Hz", sensor.stamps.rate_hz);
+    }
+    text
+}
+
+fn lines(text: &mut String, kind: SensorKind, sensor: &SensorNoise) {
+    let name = kind.name();
+    let pooled = &sensor.pooled;
+    for (key, quantity, parameter) in [
+        ("noise_density", Quantity::NoiseDensity(kind), pooled.noise_density),
+        ("random_walk", Quantity::RandomWalk(kind), pooled.random_walk),
+    ] {
+        let (unit, twin) = (quantity.unit(), quantity.twin());
+        let line = match parameter {
+            Parameter::Observable { value, low90, high90, .. } => format!(
+                "{name}_{key}: {value:.6e}  # {unit}, {low90:.3e} to {high90:.3e}; {:.4} {}",
+                value * twin.per_si,
+                twin.unit
+            ),
+            Parameter::NotObservable { upper90, record_at_least_s } if upper90.is_finite() => {
+                format!(
+                    "{name}_{key}: {upper90:.6e}  # {unit}; NOT OBSERVABLE in this record: this is \
+                     its upper 90 % bound; record at least {record_at_least_s:.0} s"
+                )
+            }
+            Parameter::NotObservable { .. } => {
+                format!("# {name}_{key}: nothing is known of it ({unit})")
+            }
+        };
+        text.push_str(&line);
+        text.push('\n');
+    }
+}
+
+/// A YAML string: a topic is a file's word, and may hold anything.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", one_line(text).replace('\\', "\\\\").replace('"', "\\\""))
+}
+
+fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn topics_cannot_break_out_of_their_quotes() {
+        assert_eq!(quoted("/imu\"\n: x\\"), "\"/imu\\\" : x\\\\\"");
+    }
+}
