@@ -10,7 +10,9 @@
 //! have the smallest intervals: they would decide the fit and ruin it. So octaves are taken in from
 //! the longest down; when one contradicts the fit of the longer ones by more than 4 standard
 //! deviations, and so does the next shorter one, both and all shorter ones are left out, and
-//! [`NoiseFit::contradiction`] says so.
+//! [`NoiseFit::contradiction`] says so. Two longer octaves go with them: what contradicts by 4
+//! standard deviations at τ is still there at 2τ and 4τ, half and a quarter of it (that is how a
+//! low-pass fades), hidden in a scatter that only grows by √2.
 //!
 //! **Not observable** is an answer: when the record cannot tell a parameter from zero (with 90 %
 //! confidence), the fit gives the bound below which it lies, and how long to record.
@@ -78,7 +80,7 @@ pub enum Parameter {
 pub struct Contradiction {
     /// Index of the longest octave that was left out; all shorter ones were, too.
     pub octave: usize,
-    /// By how many standard deviations it contradicts the fit of the longer ones.
+    /// By how many standard deviations the longest one that contradicts does so.
     pub sigmas: f64,
 }
 
@@ -102,6 +104,8 @@ const INTERVAL: f64 = 2.7055;
 const UPPER: f64 = 1.6424;
 /// Contradiction of an octave, squared standard deviations.
 const CONTRADICTS: f64 = 16.0;
+/// So many octaves more are left out, where the cause of a contradiction fades.
+const MARGIN: usize = 2;
 /// The scan for contradictions starts where a record is this many averaging times long.
 const SCAN_FROM: f64 = 64.0;
 /// Step of the coarse search over ln(K/N).
@@ -241,6 +245,7 @@ fn contradiction(all: &Likelihood) -> Option<Contradiction> {
             let shorter =
                 Likelihood { from: octave.saturating_sub(1), without: Some(octave), ..likelihood };
             if octave == 0 || contradicts(&nearby(&shorter, &longer)?, &longer) {
+                let octave = (octave + MARGIN).min(start.saturating_sub(1));
                 return Some(Contradiction { octave, sigmas });
             }
             likelihood.without = Some(octave);
@@ -260,8 +265,9 @@ fn contradicts(with: &Point, without: &Point) -> bool {
 /// The minimum near a neighbouring fit, or wherever it is if that fit did not know better.
 fn nearby(likelihood: &Likelihood, neighbour: &Point) -> Option<Point> {
     let (low, high) = likelihood.range()?;
-    let from = (neighbour.x - COARSE).clamp(low, high);
-    let point = refine(likelihood, from, (neighbour.x + COARSE).clamp(low, high));
+    let within = |x: f64| x.max(low).min(high);
+    let (from, to) = (within(neighbour.x - COARSE), within(neighbour.x + COARSE));
+    let point = refine(likelihood, from, to);
     let at_the_edge = (point.x - neighbour.x).abs() > 0.9 * COARSE;
     Some(if at_the_edge { best(likelihood, (low, high)) } else { point })
 }

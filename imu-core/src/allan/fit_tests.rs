@@ -101,7 +101,7 @@ fn short_octaves_that_contradict_are_left_out() {
     }
     let fit = fit_noise(&octaves, ALLAN);
     let contradiction = fit.contradiction.unwrap();
-    assert!(contradiction.octave >= 3 && contradiction.octave <= 5, "{contradiction:?}");
+    assert!(contradiction.octave >= 5 && contradiction.octave <= 7, "{contradiction:?}");
     assert!(contradiction.sigmas > 4.0);
     assert_eq!(fit.used.unwrap().0, contradiction.octave + 1);
     assert!((value(fit.noise_density) / 0.015 - 1.0).abs() < 0.005);
