@@ -7,6 +7,7 @@ use imu_core::allan::{
 
 use super::{AxisNoise, Deviation, LEVELS, SensorKind, SensorNoise};
 use crate::recording::{Event, Sample, Summary, Timeline};
+use crate::scene::display_duration;
 
 /// Windows a τ: statistically as good as full overlap.
 const WINDOWS: usize = 4;
@@ -204,10 +205,11 @@ impl SensorNoise {
                 .push(format!("{name}: the clock was set back, or stood still, {restarts} times"));
         }
         if let Parameter::NotObservable { record_at_least_s, .. } = self.pooled.random_walk {
+            let ns = (record_at_least_s.clamp(0.0, 1e9).round() * 1e9) as u64;
             warnings.push(format!(
-                "{name}: the record is too short to show a random walk of the bias; record at least \
-                 {:.1} h",
-                record_at_least_s / 3600.0
+                "{name}: the record is too short to show the random walk of the bias; record at \
+                 least {}, better for hours",
+                display_duration(ns)
             ));
         }
         warnings

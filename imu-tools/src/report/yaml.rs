@@ -34,7 +34,12 @@ pub fn kalibr(calibration: &Calibration) -> String {
         }
     }
     if let Some(sensor) = calibration.gyroscope.as_ref().or(calibration.accelerometer.as_ref()) {
-        let _ = writeln!(text, "\nrostopic: {}", quoted(&sensor.topic));
+        // The columns of a CSV are no topic: no topic has a space in its name.
+        let (topic, remark) = match sensor.topic.contains(' ') {
+            true => ("/imu0", "  # the recording names no topic: put yours here"),
+            false => (sensor.topic.as_str(), ""),
+        };
+        let _ = writeln!(text, "\nrostopic: {}{remark}", quoted(topic));
         let _ = writeln!(text, "update_rate: {:.6}  # Hz", sensor.stamps.rate_hz);
     }
     text

@@ -118,7 +118,7 @@ impl CsvReader {
         let time = time.map_or_else(|| (of_data(), true), |unit| (unit, false));
         let names = |column: fn(u8) -> Column| {
             let at = found.columns.iter().position(|c| *c == column(0));
-            at.map_or_else(String::new, |at| format!("column {}", at + 1))
+            at.map_or_else(String::new, |at| format!("columns from {}", at + 1))
         };
         let mut csv = Self {
             separator,
