@@ -17,8 +17,12 @@
 //! ```
 
 pub mod batch;
+pub mod block_means;
+pub mod five_terms;
 mod gravity;
+pub mod maximum_likelihood;
 mod sensor;
+pub mod slope;
 
 use std::sync::mpsc::sync_channel;
 

@@ -1,0 +1,338 @@
+//! A recording of any length as at most 2¹⁶ means of blocks: what maximum likelihood works on.
+//!
+//! White noise and a slow random walk lose nothing when samples are averaged over blocks far
+//! shorter than N/K. Blocks begin with one sample; whenever 2¹⁶ are full, neighbours are merged, so
+//! that memory stays at 2 MB however long the recording is. A block keeps the number of samples
+//! that were there, and a hole is blocks with none: time goes on in it.
+//!
+//! A sample that is not finite, or further from the median of the first 15 than 4096 times their
+//! median absolute deviation on some axis, counts as missing, as it does in an
+//! [`AllanLadder`](imu_core::allan::AllanLadder).
+//!
+//! ```
+//! use imu_tools::calibrate::block_means::BlockMeans;
+//!
+//! let mut means = BlockMeans::new();
+//! means.extend(&[[0.1, 0.2, 9.8]; 1000]);
+//! means.missing(24);
+//! assert_eq!((means.length(), means.blocks()), (1, 1024));
+//! assert_eq!(means.merged(200).length(), 256); // samples a block
+//! ```
+
+/// Blocks are merged when there are so many.
+const MOST: usize = 1 << 16;
+/// Samples that teach the bound beyond which a sample is a glitch …
+const LEARN: usize = 15;
+/// … which is this many times their median absolute deviation.
+const BOUND_IN_DEVIATIONS: f64 = 4096.0;
+/// A longer hole among the first samples ends the learning.
+const LEARN_THROUGH: u64 = 255;
+
+/// The three axes of a sensor as means of blocks of samples.
+#[derive(Clone, Debug)]
+pub struct BlockMeans {
+    length: u64,
+    /// Stretches between restarts, the last one growing. All but that have two blocks at least.
+    segments: Vec<Vec<Block>>,
+    /// Blocks in all of them.
+    blocks: usize,
+    /// The block being filled, and how many instants of it have passed.
+    open: Block,
+    passed: u64,
+    /// Samples are kept relative to this, so that a large offset costs no digits.
+    reference: [f64; 3],
+    bound: [f64; 3],
+    /// The first samples, missing ones as NaN, until there are enough to learn from.
+    waiting: Option<Vec<[f64; 3]>>,
+}
+
+/// The samples of one block.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Block {
+    /// How many were there.
+    pub samples: u64,
+    /// Their sum, relative to the reference.
+    pub sum: [f64; 3],
+}
+
+impl Block {
+    fn merge(pair: &[Self]) -> Self {
+        let mut both = Self::default();
+        for block in pair {
+            both.samples += block.samples;
+            for (sum, more) in both.sum.iter_mut().zip(block.sum) {
+                *sum += more;
+            }
+        }
+        both
+    }
+}
+
+impl Default for BlockMeans {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl BlockMeans {
+    /// Nothing collected yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            length: 1,
+            segments: vec![Vec::new()],
+            blocks: 0,
+            open: Block::default(),
+            passed: 0,
+            reference: [0.0; 3],
+            bound: [f64::MAX; 3],
+            waiting: Some(Vec::new()),
+        }
+    }
+
+    /// Takes consecutive samples.
+    pub fn extend(&mut self, samples: &[[f64; 3]]) {
+        for sample in samples {
+            match &mut self.waiting {
+                None => self.take(sample),
+                Some(waiting) => {
+                    waiting.push(*sample);
+                    if waiting.iter().filter(|s| finite(s)).count() == LEARN {
+                        self.learn();
+                    }
+                }
+            }
+        }
+    }
+
+    /// `n` samples did not come: their time passes.
+    pub fn missing(&mut self, n: u64) {
+        if let Some(waiting) = &mut self.waiting {
+            if n <= LEARN_THROUGH && !waiting.is_empty() {
+                waiting.extend((0..n).map(|_| [f64::NAN; 3]));
+                return;
+            }
+            self.learn();
+        }
+        self.pass(n);
+    }
+
+    /// A new beginning: nothing is known of the time since the last sample.
+    pub fn restart(&mut self) {
+        self.learn();
+        self.open = Block::default();
+        self.passed = 0;
+        if let Some(last) = self.segments.last_mut() {
+            if last.len() < 2 {
+                self.blocks -= last.len();
+                last.clear();
+            } else {
+                self.segments.push(Vec::new());
+            }
+        }
+    }
+
+    /// Samples a block, a power of two.
+    #[must_use]
+    pub fn length(&self) -> u64 {
+        self.length
+    }
+
+    /// How many blocks are full. Until there were 15 samples there are none.
+    #[must_use]
+    pub fn blocks(&self) -> usize {
+        self.blocks
+    }
+
+    /// The same record in blocks of at least `samples` samples (of all of it, if that is less).
+    #[must_use]
+    pub fn merged(&self, samples: u64) -> Self {
+        let mut merged = self.clone();
+        merged.learn();
+        while merged.length < samples && merged.blocks() > 2 {
+            merged.double();
+        }
+        merged
+    }
+
+    /// The stretches between restarts; nothing links one with the next.
+    pub(super) fn segments(&self) -> &[Vec<Block>] {
+        &self.segments
+    }
+
+    /// Takes reference and bound from the samples that wait, then takes those samples.
+    fn learn(&mut self) {
+        let Some(waiting) = self.waiting.take_if(|waiting| waiting.iter().any(finite)) else {
+            return;
+        };
+        for axis in 0..3 {
+            let column = || waiting.iter().filter(|s| finite(s)).map(|s| s[axis]);
+            let middle = median(column());
+            let bound = BOUND_IN_DEVIATIONS * median(column().map(|x| (x - middle).abs()));
+            self.reference[axis] = middle;
+            self.bound[axis] = if bound > 0.0 { bound } else { f64::MAX };
+        }
+        for sample in &waiting {
+            self.take(sample);
+        }
+    }
+
+    #[inline]
+    fn take(&mut self, sample: &[f64; 3]) {
+        let mut offset = [0.0; 3];
+        let mut inside = true;
+        for axis in 0..3 {
+            offset[axis] = sample[axis] - self.reference[axis];
+            inside &= offset[axis].abs() <= self.bound[axis];
+        }
+        if inside {
+            self.open.samples += 1;
+            for (sum, offset) in self.open.sum.iter_mut().zip(offset) {
+                *sum += offset;
+            }
+        }
+        self.pass(1);
+    }
+
+    /// Lets the time of `n` samples pass.
+    #[inline]
+    fn pass(&mut self, mut n: u64) {
+        while n > 0 {
+            let step = n.min(self.length - self.passed);
+            self.passed += step;
+            n -= step;
+            if self.passed == self.length && !self.close() {
+                return;
+            }
+        }
+    }
+
+    /// Puts the block being filled to the others; `false` if there is nothing to keep time for.
+    fn close(&mut self) -> bool {
+        let block = std::mem::take(&mut self.open);
+        self.passed = 0;
+        let Some(last) = self.segments.last_mut() else { return false };
+        if last.is_empty() && block.samples == 0 {
+            return false;
+        }
+        last.push(block);
+        self.blocks += 1;
+        if self.blocks >= MOST {
+            self.double();
+        }
+        true
+    }
+
+    /// Merges neighbours. What is left at the end of a finished stretch is dropped.
+    fn double(&mut self) {
+        if let Some(last) = self.segments.last_mut()
+            && last.len() % 2 == 1
+            && let Some(odd) = last.pop()
+        {
+            self.open = Block::merge(&[odd, self.open]);
+            self.passed += self.length;
+        }
+        self.length = self.length.saturating_mul(2);
+        let growing = self.segments.len() - 1;
+        for segment in &mut self.segments {
+            *segment = segment.chunks_exact(2).map(Block::merge).collect();
+        }
+        let mut index = 0;
+        self.segments.retain(|segment| {
+            index += 1;
+            index > growing || segment.len() >= 2
+        });
+        self.blocks = self.segments.iter().map(Vec::len).sum();
+    }
+}
+
+fn finite(sample: &[f64; 3]) -> bool {
+    sample.iter().all(|x| x.is_finite())
+}
+
+/// The median (the lower of two); 0 of none.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sample k of a record: three different, exactly representable values.
+    fn row(k: u64) -> [f64; 3] {
+        let k = (k * 37 % 101) as f64;
+        [k, 2.0 * k - 7.0, 0.5 * k + 3.0]
+    }
+
+    fn means(block: &Block, reference: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|i| reference[i] + block.sum[i] / block.samples as f64)
+    }
+
+    #[test]
+    fn blocks_hold_the_means_of_their_samples() {
+        // 2¹⁸ + 5 samples: blocks of 8, then of 16.
+        let mut collected = BlockMeans::new();
+        let rows: Vec<_> = (0..(1 << 18) + 5).map(row).collect();
+        rows.chunks(1000).for_each(|chunk| collected.extend(chunk));
+        assert_eq!((collected.length(), collected.blocks()), (8, 1 << 15));
+        let merged = collected.merged(16);
+        assert_eq!((merged.length(), merged.blocks()), (16, 1 << 14));
+        for (k, block) in merged.segments()[0].iter().enumerate() {
+            let rows = &rows[16 * k..][..16];
+            let expected = [0, 1, 2].map(|i| rows.iter().map(|row| row[i]).sum::<f64>() / 16.0);
+            assert_eq!(means(block, merged.reference), expected);
+        }
+    }
+
+    #[test]
+    fn holes_pass_time_and_glitches_are_holes() {
+        let mut collected = BlockMeans::new();
+        collected.missing(10); // before the first sample: nothing to keep
+        for k in 0..4096 {
+            match k {
+                3 => collected.extend(&[[1e4, 0.0, 0.0].map(|x| x * 1e4)]),
+                100 => collected.extend(&[[0.0, f64::NAN, 0.0]]),
+                500 => collected.extend(&[[0.0, 0.0, 1e30]]),
+                1000..1100 => collected.missing(1),
+                _ => collected.extend(&[row(k)]),
+            }
+        }
+        assert_eq!(collected.blocks(), 4096);
+        let there = |k: usize| collected.segments()[0][k].samples == 1;
+        for k in 0..4096 {
+            assert_eq!(there(k), !matches!(k, 3 | 100 | 500 | 1000..1100), "sample {k}");
+        }
+        let merged = collected.merged(128);
+        assert_eq!(merged.segments()[0][7].samples, 128 - 24); // 896…1023
+        assert_eq!(merged.segments()[0][0].samples, 126);
+    }
+
+    #[test]
+    fn memory_is_bounded_whatever_comes() {
+        let mut collected = BlockMeans::new();
+        for k in 0..20_000 {
+            collected.extend(&(0..30).map(|i| row(k + i)).collect::<Vec<_>>());
+            collected.restart();
+        }
+        assert!(collected.blocks() <= MOST && collected.segments.len() <= MOST / 2 + 1);
+        collected.extend(&[row(1)]);
+        collected.missing(u64::MAX);
+        collected.extend(&[row(2)]);
+        assert!(collected.blocks() <= MOST);
+    }
+
+    #[test]
+    fn nothing_spans_a_restart() {
+        let mut collected = BlockMeans::new();
+        let rows: Vec<_> = (0..100).map(row).collect();
+        collected.extend(&rows);
+        collected.restart();
+        collected.extend(&rows[..33]);
+        let merged = collected.merged(32);
+        let lengths: Vec<usize> = merged.segments().iter().map(Vec::len).collect();
+        assert_eq!(lengths, [3, 1]);
+    }
+}
