@@ -2,7 +2,7 @@
 //!
 //! A recording is read on one thread and computed on another, block by block, in memory that does
 //! not grow: stamps go to a grid ([`crate::recording::Timeline`]), values into a ladder of Allan
-//! variances, and at the end `imu_core::allan` fits N and K to it.
+//! variances, and at the end `imu_core::allan` fits N and K to it (or another [`Estimator`] does).
 //!
 //! ```
 //! use imu_tools::calibrate::{Options, calibrate};
@@ -45,6 +45,20 @@ pub struct Options {
     /// The user has said what unit the accelerometer is in: gravity that contradicts it is only
     /// worth a warning.
     pub unit_is_given: bool,
+    /// How N and K are estimated.
+    pub estimator: Estimator,
+}
+
+/// How N and K are estimated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Estimator {
+    /// By the likelihood of the octaves ([`imu_core::allan::fit_noise`]).
+    #[default]
+    Octaves,
+    /// By exact maximum likelihood on block means ([`maximum_likelihood`]).
+    MaximumLikelihood,
+    /// By the classic slopes ([`slope`]), for comparison: they have no intervals.
+    Slope,
 }
 
 /// What a recording says about its IMU.
@@ -150,8 +164,8 @@ pub fn calibrate(
     mut progress: impl FnMut(Progress),
 ) -> Result<Calibration, Error> {
     let mut window = Window::new(options);
-    let mut gyroscope = Pipeline::new(SensorKind::Gyroscope);
-    let mut accelerometer = Pipeline::new(SensorKind::Accelerometer);
+    let mut gyroscope = Pipeline::new(SensorKind::Gyroscope, options.estimator);
+    let mut accelerometer = Pipeline::new(SensorKind::Accelerometer, options.estimator);
     let mut samples = 0;
     let mut source = read_ahead(source, |block, bytes| {
         window.open(block);

@@ -5,7 +5,10 @@ use imu_core::allan::{
     fit_noise_from, fitted_edf,
 };
 
-use super::{AxisNoise, Deviation, LEVELS, SensorKind, SensorNoise};
+use super::block_means::BlockMeans;
+use super::maximum_likelihood;
+use super::slope::{self, SlopeReading};
+use super::{AxisNoise, Deviation, Estimator, LEVELS, SensorKind, SensorNoise};
 use crate::recording::{Event, Sample, Summary, Timeline};
 use crate::scene::display_duration;
 
@@ -24,8 +27,11 @@ pub(super) struct Pipeline {
 /// What becomes of values on the grid.
 struct Taken {
     kind: SensorKind,
+    estimator: Estimator,
     /// Begun when the first values show what is normal.
     ladder: Option<SensorLadder>,
+    /// Only for maximum likelihood.
+    means: Option<BlockMeans>,
     /// Σ of values less the first reference, and how many.
     sum: [f64; 3],
     offset: [f64; 3],
@@ -33,8 +39,17 @@ struct Taken {
 }
 
 impl Pipeline {
-    pub(super) fn new(kind: SensorKind) -> Self {
-        let taken = Taken { kind, ladder: None, sum: [0.0; 3], offset: [0.0; 3], count: 0 };
+    pub(super) fn new(kind: SensorKind, estimator: Estimator) -> Self {
+        let means = (estimator == Estimator::MaximumLikelihood).then(BlockMeans::new);
+        let taken = Taken {
+            kind,
+            estimator,
+            ladder: None,
+            means,
+            sum: [0.0; 3],
+            offset: [0.0; 3],
+            count: 0,
+        };
         Self { kind, timeline: Timeline::new(), taken }
     }
 
@@ -53,7 +68,13 @@ impl Pipeline {
         for (mean, sum) in mean.iter_mut().zip(taken.sum) {
             *mean += sum / count;
         }
-        Some(noise(kind, topic, stamps, &ladder, mean))
+        let mut noise = noise(kind, topic, stamps, &ladder, mean);
+        match taken.estimator {
+            Estimator::Octaves => {}
+            Estimator::MaximumLikelihood => noise.by_maximum_likelihood(&taken.means?),
+            Estimator::Slope => noise.by_slope(),
+        }
+        Some(noise)
     }
 }
 
@@ -67,6 +88,9 @@ impl Taken {
                     ladder
                 });
                 ladder.extend(values);
+                if let Some(means) = &mut self.means {
+                    means.extend(values);
+                }
                 for value in values {
                     if value.iter().all(|x| x.abs() < 1e6) {
                         for ((sum, x), offset) in self.sum.iter_mut().zip(value).zip(self.offset) {
@@ -80,10 +104,16 @@ impl Taken {
                 if let Some(ladder) = &mut self.ladder {
                     ladder.missing(n);
                 }
+                if let Some(means) = &mut self.means {
+                    means.missing(n);
+                }
             }
             Event::Restart => {
                 if let Some(ladder) = &mut self.ladder {
                     ladder.restart();
+                }
+                if let Some(means) = &mut self.means {
+                    means.restart();
                 }
             }
         }
@@ -140,8 +170,10 @@ fn noise(
         .max_by_key(|c| c.octave);
     let from = contradiction.map_or(0, |c| c.octave + 1);
     let fits = octaves.map(|axis| fit_noise_from(&axis, sampling, from));
-    let pooled =
-        fit_noise_from(&average_octaves(&octaves), Sampling { records: 3, ..sampling }, from);
+    // An axis that never changes is no record of noise.
+    let live: Vec<_> = octaves.into_iter().filter(|axis| axis[0].variance > 0.0).collect();
+    let together = Sampling { records: live.len() as u32, ..sampling };
+    let pooled = fit_noise_from(&average_octaves(&live), together, from);
 
     let tau = |octave: &Octave| octave.samples as f64 * tau0_s;
     let deviation = (0..LEVELS)
@@ -172,6 +204,45 @@ fn noise(
 }
 
 impl SensorNoise {
+    /// Puts the exact maximum likelihood in the place of the fit to octaves.
+    fn by_maximum_likelihood(&mut self, means: &BlockMeans) {
+        let tau0_s = self.tau0_s();
+        let shortest_s = self.tau_used_s.map_or(0.0, |(first, _)| first);
+        let found = maximum_likelihood::fit(means, tau0_s, shortest_s);
+        let noise =
+            |e: Estimate| AxisNoise { noise_density: e.noise_density, random_walk: e.random_walk };
+        self.axes = found.axes.map(noise);
+        self.pooled = noise(found.pooled);
+        self.tau_used_s = Some((found.block_s, self.stamps.span_s));
+    }
+
+    /// Puts the classic slope readings in the place of the fit; they have no interval, so theirs is
+    /// all there is.
+    fn by_slope(&mut self) {
+        let axes = [0, 1, 2].map(|axis| self.curve(axis));
+        let read = |axes: &[&[Octave]]| {
+            let SlopeReading { noise_density, random_walk } =
+                slope::kalibr_allan(axes, self.tau0_s());
+            AxisNoise { noise_density: reading(noise_density), random_walk: reading(random_walk) }
+        };
+        let [x, y, z] = &axes;
+        let found = axes.each_ref().map(|axis| read(&[axis]));
+        self.pooled = read(&[x, y, z]);
+        self.axes = found;
+    }
+
+    /// Time between samples, s; 0 where it is not known.
+    #[must_use]
+    pub fn tau0_s(&self) -> f64 {
+        if self.stamps.rate_hz > 0.0 { 1.0 / self.stamps.rate_hz } else { 0.0 }
+    }
+
+    /// The octaves of one axis, shortest first.
+    #[must_use]
+    pub fn curve(&self, axis: usize) -> Vec<Octave> {
+        self.deviation.iter().filter_map(|d| d.octaves.get(axis).copied()).collect()
+    }
+
     /// What its user should know before believing it.
     pub(super) fn warnings(&self) -> Vec<String> {
         let name = self.kind.name();
@@ -190,6 +261,15 @@ impl SensorNoise {
                 self.rejected
             ));
         }
+        let stuck = self.deviation.first().map_or([false; 3], |first| {
+            first.octaves.map(|octave| octave.differences > 0 && octave.variance == 0.0)
+        });
+        for (axis, _) in ["x", "y", "z"].iter().zip(stuck).filter(|(_, stuck)| *stuck) {
+            warnings.push(format!(
+                "{name}: axis {axis} never changes: it is stuck, or finer than the recording's \
+                 digits"
+            ));
+        }
         let Summary { gap_count, missing, duplicates, backward, restarts, .. } = self.stamps;
         if gap_count > 0 {
             warnings.push(format!("{name}: {missing} samples are missing in {gap_count} gaps"));
@@ -204,7 +284,9 @@ impl SensorNoise {
             warnings
                 .push(format!("{name}: the clock was set back, or stood still, {restarts} times"));
         }
-        if let Parameter::NotObservable { record_at_least_s, .. } = self.pooled.random_walk {
+        if let Parameter::NotObservable { upper90, record_at_least_s } = self.pooled.random_walk
+            && upper90.is_finite()
+        {
             let ns = (record_at_least_s.clamp(0.0, 1e9).round() * 1e9) as u64;
             warnings.push(format!(
                 "{name}: the record is too short to show the random walk of the bias; record at \
@@ -213,6 +295,16 @@ impl SensorNoise {
             ));
         }
         warnings
+    }
+}
+
+/// A number without an interval.
+fn reading(value: Option<f64>) -> Parameter {
+    match value {
+        Some(value) => {
+            Parameter::Observable { value, sd: f64::INFINITY, low90: 0.0, high90: f64::INFINITY }
+        }
+        None => Parameter::NotObservable { upper90: f64::INFINITY, record_at_least_s: 0.0 },
     }
 }
 

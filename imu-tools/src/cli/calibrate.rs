@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::progress;
-use crate::calibrate::{Calibration, Options, calibrate};
+use crate::calibrate::{Calibration, Estimator, Options, calibrate};
 use crate::error::Error;
 use crate::output::Output;
 use crate::recording::{self, ForceUnit, RateUnit, ReadOptions, TimeUnit};
@@ -46,6 +46,9 @@ pub(super) struct Calibrate {
     /// End this many seconds after the first sample
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     to: Option<f64>,
+    /// How to estimate N and K
+    #[arg(long, value_enum, default_value_t = EstimatorName::Octaves)]
+    estimator: EstimatorName,
     /// The topic in a bag that has several (imu and /imu are the same)
     #[arg(long, value_name = "TOPIC")]
     topic: Option<String>,
@@ -64,6 +67,16 @@ pub(super) struct Calibrate {
     /// Unit of time in a CSV: s, ms, us, ns
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<TimeUnit>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EstimatorName {
+    /// Likelihood of the octaves of τ (the default)
+    Octaves,
+    /// Exact maximum likelihood on block means
+    Ml,
+    /// The classic reading of slopes -1/2 and +1/2, as kalibr_allan does: to compare
+    Slope,
 }
 
 impl Calibrate {
@@ -105,7 +118,16 @@ impl Calibrate {
         {
             return Err(Error::usage(format!("--from {from} is not before --to {to}")));
         }
-        Ok(Options { from_s: self.from, to_s: self.to, unit_is_given: self.accel_unit.is_some() })
+        Ok(Options {
+            from_s: self.from,
+            to_s: self.to,
+            unit_is_given: self.accel_unit.is_some(),
+            estimator: match self.estimator {
+                EstimatorName::Octaves => Estimator::Octaves,
+                EstimatorName::Ml => Estimator::MaximumLikelihood,
+                EstimatorName::Slope => Estimator::Slope,
+            },
+        })
     }
 
     fn read_options(&self) -> ReadOptions {

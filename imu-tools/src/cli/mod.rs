@@ -5,6 +5,7 @@
 //! closes the pipe early (`imu … | head`) ends the program quietly.
 
 mod calibrate;
+mod demo;
 mod progress;
 mod simulate;
 
@@ -28,6 +29,7 @@ struct Imu {
 #[derive(Debug, Subcommand)]
 enum Command {
     Calibrate(calibrate::Calibrate),
+    Demo(demo::Demo),
     Simulate(simulate::Simulate),
 }
 
@@ -44,6 +46,7 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let result = match command {
         Command::Calibrate(calibrate) => calibrate.run(),
+        Command::Demo(demo) => demo.run(),
         Command::Simulate(simulate) => simulate.run(),
     };
     match result {

@@ -1,9 +1,10 @@
 //! Results for people and for machines: one form a file, no decisions in any of them.
 //!
-//! [`table`] for a terminal, [`json`] for programs, [`yaml`] for Kalibr, [`csv`] for plots. All
-//! write a [`Calibration`](crate::calibrate::Calibration) into text.
+//! [`table`] for a terminal, [`json`] for programs, [`yaml`] for Kalibr, [`csv`] for plots, [`demo`]
+//! for the comparison of several with the truth. All write a [`Calibration`](crate::calibrate::Calibration) into text.
 
 pub mod csv;
+pub mod demo;
 pub mod json;
 pub mod table;
 mod units;

@@ -60,6 +60,14 @@ fn block(
     let rows = AXES.iter().zip(&sensor.axes).chain([(&"all axes", &sensor.pooled)]);
     for (name, axis) in rows {
         let _ = match of(axis) {
+            Parameter::NotObservable { upper90, .. } if upper90.is_infinite() => {
+                writeln!(text, "    {name:<26}not observable: nothing is known of it")
+            }
+            Parameter::Observable { value, high90, .. } if high90.is_infinite() => writeln!(
+                text,
+                "    {name:<26}{value:>12.4e}    a reading, no interval        {}",
+                short(value * twin.per_si)
+            ),
             Parameter::Observable { value, low90, high90, .. } => writeln!(
                 text,
                 "    {name:<26}{value:>12.4e}    {low90:.4e} to {high90:.4e}      {}",

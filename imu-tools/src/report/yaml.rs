@@ -54,6 +54,9 @@ fn lines(text: &mut String, kind: SensorKind, sensor: &SensorNoise) {
     ] {
         let (unit, twin) = (quantity.unit(), quantity.twin());
         let line = match parameter {
+            Parameter::Observable { value, high90, .. } if high90.is_infinite() => {
+                format!("{name}_{key}: {value:.6e}  # {unit}, a reading without an interval")
+            }
             Parameter::Observable { value, low90, high90, .. } => format!(
                 "{name}_{key}: {value:.6e}  # {unit}, {low90:.3e} to {high90:.3e}; {:.4} {}",
                 value * twin.per_si,
