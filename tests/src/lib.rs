@@ -1,4 +1,6 @@
 //! Published data and helpers that the cross-crate tests share.
 
+pub mod bags;
 pub mod command;
 pub mod monte_carlo;
+pub mod recordings;

@@ -3,8 +3,9 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use imu_tests::bags::{bag, chunk, connection, message, record};
 use imu_tools::error::Error;
-use imu_tools::recording::{self, Block, Note, ReadOptions, Sample};
+use imu_tools::recording::{self, Block, ForceUnit, Note, RateUnit, ReadOptions, Sample};
 
 const START: i64 = 1_700_000_000_000_000_000;
 
@@ -50,66 +51,6 @@ fn folder() -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-/// A record with these header fields, in this order.
-fn record(fields: &[(&str, &[u8])], data: &[u8]) -> Vec<u8> {
-    let mut header = Vec::new();
-    for (name, value) in fields {
-        header.extend(((name.len() + 1 + value.len()) as u32).to_le_bytes());
-        header.extend([name.as_bytes(), b"=", value].concat());
-    }
-    let mut record = (header.len() as u32).to_le_bytes().to_vec();
-    record.extend(header);
-    record.extend((data.len() as u32).to_le_bytes());
-    record.extend(data);
-    record
-}
-
-fn connection(number: u32, topic: &str, type_name: &str) -> Vec<u8> {
-    let mut data = Vec::new();
-    for field in [
-        format!("topic={topic}"),
-        format!("type={type_name}"),
-        "md5sum=*".to_owned(),
-        "message_definition=...".to_owned(),
-    ] {
-        data.extend((field.len() as u32).to_le_bytes());
-        data.extend(field.as_bytes());
-    }
-    let number = number.to_le_bytes();
-    record(&[("topic", topic.as_bytes()), ("op", &[7]), ("conn", &number)], &data)
-}
-
-/// An Imu message at second `sec`, recorded a second later.
-fn message(number: u32, sec: u32, order: usize) -> Vec<u8> {
-    let mut payload = vec![0; 4];
-    payload.extend(sec.to_le_bytes());
-    payload.extend([0; 4]);
-    payload.extend(3_u32.to_le_bytes());
-    payload.extend(b"imu");
-    payload.extend((0..37).flat_map(|i| f64::from(i).to_le_bytes()));
-    let mut time = (sec + 1).to_le_bytes().to_vec();
-    time.extend([0; 4]);
-    let number = number.to_le_bytes();
-    let mut fields: Vec<(&str, &[u8])> = vec![("op", &[2]), ("conn", &number), ("time", &time)];
-    fields.rotate_left(order % 3);
-    record(&fields, &payload)
-}
-
-fn chunk(records: &[Vec<u8>]) -> Vec<u8> {
-    let data = records.concat();
-    let size = (data.len() as u32).to_le_bytes();
-    record(&[("size", &size), ("compression", b"none"), ("op", &[5])], &data)
-}
-
-fn bag(records: &[Vec<u8>]) -> Vec<u8> {
-    let (zero, one) = (0_u64.to_le_bytes(), 1_u32.to_le_bytes());
-    let header = record(
-        &[("op", &[3]), ("index_pos", &zero), ("conn_count", &one), ("chunk_count", &one)],
-        &[b' '; 4027],
-    );
-    [b"#ROSBAG V2.0\n".to_vec(), header, records.concat()].concat()
-}
-
 #[test]
 fn samples_are_read_back_to_the_bit() {
     let (_folder, path) = folder();
@@ -131,6 +72,31 @@ fn sensors_of_different_rates_share_a_bag() {
     block.accelerometer.retain(|s| (s.stamp_ns - START) / 4_999_999 % 4 == 0);
     write(&path, std::slice::from_ref(&block));
     assert_eq!(read(&path, &ReadOptions::default()).unwrap().0, block);
+}
+
+#[test]
+fn units_that_the_user_gives_are_brought_to_si() {
+    let (_folder, path) = folder();
+    let mut block = Block::default();
+    block.gyroscope.push(Sample { stamp_ns: START, value: [180.0, 0.0, -90.0] });
+    block.accelerometer.push(Sample { stamp_ns: START, value: [0.0, 0.5, -1.0] });
+    write(&path, &[block]);
+    let options = ReadOptions {
+        gyro_unit: Some(RateUnit::DegPerS),
+        accel_unit: Some(ForceUnit::G),
+        ..ReadOptions::default()
+    };
+    let (read, _) = read(&path, &options).unwrap();
+    let pi = std::f64::consts::PI;
+    // One rounding of the factor and one of the product.
+    for (got, want) in [
+        (read.gyroscope[0].value, [pi, 0.0, -pi / 2.0]),
+        (read.accelerometer[0].value, [0.0, 0.5 * 9.80665, -9.80665]),
+    ] {
+        for (got, want) in got.iter().zip(want) {
+            assert!((got - want).abs() <= 4e-16 * want.abs(), "{got} {want}");
+        }
+    }
 }
 
 #[test]

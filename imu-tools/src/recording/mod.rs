@@ -131,9 +131,9 @@ pub struct ReadOptions {
     pub bag_time: bool,
     /// Columns of a CSV, such as `t,gx,gy,gz,ax,ay,az,-`. `None` finds them.
     pub columns: Option<String>,
-    /// Unit of a CSV's angular rates. `None` finds it in the header, or takes rad/s.
+    /// Unit of the angular rates. `None` finds it in a CSV's header, or takes rad/s.
     pub gyro_unit: Option<RateUnit>,
-    /// Unit of a CSV's specific forces. `None` finds it in the header, or takes m/s².
+    /// Unit of the specific forces. `None` finds it in a CSV's header, or takes m/s².
     pub accel_unit: Option<ForceUnit>,
     /// Unit of a CSV's time. `None` finds it in the header or in the data.
     pub time_unit: Option<TimeUnit>,

@@ -8,13 +8,18 @@ use super::repeat::Repeat;
 use super::topics::{Role, Topics};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
-use crate::recording::{BLOCK_SAMPLES, Block, Note, ReadOptions, Sample, Source};
+use crate::recording::{
+    BLOCK_SAMPLES, Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Source,
+};
 
 /// A bag being read.
 pub struct BagReader {
     input: Input,
     topics: Topics,
     bag_time: bool,
+    /// Factors to SI units: 1 unless the user says that the bag does not keep to them.
+    rate: f64,
+    force: f64,
     /// Where the chunk ends in which we are.
     chunk_end: u64,
     /// Where the bag says that its index is; 0 when it was never closed.
@@ -46,6 +51,13 @@ impl BagReader {
     /// # Errors
     /// When this is no bag, is compressed, or has not exactly one topic that fits.
     pub fn open(mut input: Input, options: &ReadOptions) -> Result<Self, Error> {
+        if options.columns.is_some() || options.time_unit.is_some() {
+            return Err(Error::usage(format!(
+                "{} is a bag: --columns and --time-unit are for tables, --topic and --bag-time \
+                 are for bags",
+                input.path().display()
+            )));
+        }
         input.fill(MAGIC.len())?;
         if !input.at_hand().starts_with(MAGIC) {
             return Err(Error::data(format!(
@@ -58,6 +70,8 @@ impl BagReader {
             input,
             topics: Topics::new(options.topic.as_deref()),
             bag_time: options.bag_time,
+            rate: options.gyro_unit.map_or(1.0, RateUnit::to_rad_s),
+            force: options.accel_unit.map_or(1.0, ForceUnit::to_m_s2),
             chunk_end: 0,
             index_pos: 0,
             listed: false,
@@ -359,6 +373,15 @@ impl Taken {
     }
 }
 
+/// Brings values to SI units.
+fn scale(samples: &mut [Sample], factor: f64) {
+    if factor != 1.0 {
+        for value in samples.iter_mut().flat_map(|sample| &mut sample.value) {
+            *value *= factor;
+        }
+    }
+}
+
 /// Whether another message fits.
 #[inline]
 fn has_room(block: &Block) -> bool {
@@ -381,6 +404,8 @@ impl Source for BagReader {
                 break;
             }
         }
+        scale(&mut block.gyroscope, self.rate);
+        scale(&mut block.accelerometer, self.force);
         Ok(!block.gyroscope.is_empty() || !block.accelerometer.is_empty())
     }
 
