@@ -26,7 +26,7 @@
 //! | 1 each | version of this layout (1), S, levels, windows, order, three zeros |
 //! | 4 | axes |
 //! | 1 | samples that wait while the ladder learns; 255: it has learnt |
-//! | 15 | missing samples before each that waits |
+//! | 7 | missing samples before each that waits |
 //! | 8 each | position, missing samples, rejected samples |
 //! | S · axes each | reference, bound |
 //! | 8 · levels | differences |

@@ -169,6 +169,6 @@ fn the_layout_is_stable() {
     ladder.missing(5);
     let bytes = bytes_of(&ladder);
     assert_eq!(bytes[..16], *b"IMUL\x01\x04\x06\x04\x01\0\0\0\x02\0\0\0");
-    assert_eq!(bytes.len(), 16 + 16 + 24 + 16 + 6 * (16 + 16) + 24 * (8 + 4) + 4);
-    assert_eq!(bytes[bytes.len() - CRC..], [252, 10, 137, 71]);
+    assert_eq!(bytes.len(), 16 + 8 + 24 + 16 + 6 * (16 + 16) + 24 * (8 + 4) + 4);
+    assert_eq!(bytes[bytes.len() - CRC..], [100, 35, 247, 41]);
 }

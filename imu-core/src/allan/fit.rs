@@ -124,7 +124,9 @@ pub fn fit_noise(octaves: &[Octave], sampling: Sampling) -> NoiseFit {
     let mut likelihood = Likelihood { octaves, sampling, from: 0, without: None };
     let contradiction = contradiction(&likelihood);
     likelihood.from = contradiction.map_or(0, |c| c.octave + 1);
-    NoiseFit { contradiction, ..fit(&likelihood) }
+    let mut fit = fit(&likelihood);
+    fit.contradiction = contradiction;
+    fit
 }
 
 /// Fits N and K to the octaves from index `from` on, whatever they say of one another.
@@ -230,7 +232,9 @@ fn span(likelihood: &Likelihood) -> f64 {
         * likelihood.sampling.tau0_s
 }
 
-/// Looks for short octaves that contradict the longer ones.
+/// Looks for short octaves that contradict the longer ones. Its memory is free again when the fit
+/// begins.
+#[inline(never)]
 fn contradiction(all: &Likelihood) -> Option<Contradiction> {
     let span = span(all);
     let start = all.octaves.iter().position(|o| all.tau(o) * SCAN_FROM * 2.0 > span)?;

@@ -45,7 +45,7 @@ pub type HadamardLadder<T, const AXES: usize, const LEVELS: usize, const WINDOWS
 ///   worst one visit a level. [`extend`](Self::extend) gives the same bits, faster.
 /// - Values are taken relative to a *reference* near them, so an offset costs no digits, and a
 ///   sample with an axis beyond a *bound* around it, or not finite, counts as missing. Both are
-///   given ([`with_reference`](Self::with_reference)) or learnt from the first 15 samples: their
+///   given ([`with_reference`](Self::with_reference)) or learnt from the first 7 samples: their
 ///   median, and 4096 times their median absolute deviation (no bound but
 ///   [`limit`](Self::limit) where that is zero: a coarse signal's first samples may be equal). A
 ///   signal that lies still at first and then moves a great deal wants a given bound.
@@ -197,7 +197,7 @@ impl<T: Real, const AXES: usize, const LEVELS: usize, const WINDOWS: usize, cons
     }
 
     /// What every τ shows of one axis now, shortest first; an axis that does not exist shows no
-    /// differences. Disturbs nothing. Samples that wait while the ladder learns (the first 15) are
+    /// differences. Disturbs nothing. Samples that wait while the ladder learns (the first 7) are
     /// not in it yet.
     pub fn octaves(&self, axis: usize) -> [Octave; LEVELS] {
         let mut level = 0_u32;

@@ -76,10 +76,11 @@ impl Likelihood<'_> {
         edf(self.sampling.difference, octave.samples, stride, octave.differences, mixture)
     }
 
-    fn link(&self, level: usize, octave: &Octave, ratio: f64) -> Link {
+    /// An octave with as many `degrees` of freedom in one record.
+    #[inline(never)] // As for `given`.
+    fn link(&self, (level, octave): (usize, &Octave), ratio: f64, degrees: f64) -> Link {
         let (white, walk) = self.shares(octave, ratio);
         let model = white + walk;
-        let degrees = self.degrees(octave, ratio);
         let ninth = 2.0 / (9.0 * degrees * f64::from(self.sampling.records.max(1)));
         let scale = 1.0 / libm::sqrt(ninth);
         let root = libm::cbrt(octave.variance / model) * scale;
@@ -97,6 +98,26 @@ impl Likelihood<'_> {
         (covariance / libm::sqrt(short.relative * long.relative)).clamp(-0.95, 0.95)
     }
 
+    /// Root, mean and variance of an octave where the one or two `longer` ones next to it are known.
+    #[inline(never)] // Its memory is not needed while the degrees of freedom are worked out.
+    fn given(&self, link: &Link, longer: &[Option<Link>; 2], ratio: f64) -> (f64, f64, f64) {
+        let (mut root, mut mean, mut variance) = (link.root, link.mean, 1.0);
+        let near = longer[0].map_or(0.0, |l| self.correlation(link, &l, ratio));
+        let far = longer[1].map_or(0.0, |l| self.correlation(link, &l, ratio));
+        let between = match (&longer[0], &longer[1]) {
+            (Some(near), Some(far)) => self.correlation(near, far, ratio),
+            _ => 0.0,
+        };
+        let scale = 1.0 / (1.0 - between * between);
+        let weights = [(near - between * far) * scale, (far - between * near) * scale];
+        for ((link, weight), rho) in longer.iter().flatten().zip(weights).zip([near, far]) {
+            root -= weight * link.root;
+            mean -= weight * link.mean;
+            variance -= weight * rho;
+        }
+        (root, mean, variance.max(0.05))
+    }
+
     /// The likelihood at K/N = e^`log_ratio` (1/s).
     pub fn at(&self, log_ratio: f64) -> AtRatio {
         let ratio = libm::exp(log_ratio);
@@ -104,29 +125,17 @@ impl Likelihood<'_> {
         let (mut a, mut b, mut c, mut log_scale, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0);
         let mut longer: [Option<Link>; 2] = [None, None];
         for (level, octave) in self.usable().rev() {
-            let link = self.link(level, octave, ratio);
-            let (mut root, mut mean, mut variance) = (link.root, link.mean, 1.0);
-            let near = longer[0].map_or(0.0, |l| self.correlation(&link, &l, ratio));
-            let far = longer[1].map_or(0.0, |l| self.correlation(&link, &l, ratio));
-            let between = match (&longer[0], &longer[1]) {
-                (Some(near), Some(far)) => self.correlation(near, far, ratio),
-                _ => 0.0,
-            };
-            let scale = 1.0 / (1.0 - between * between);
-            let weights = [(near - between * far) * scale, (far - between * near) * scale];
-            for ((link, weight), rho) in longer.iter().flatten().zip(weights).zip([near, far]) {
-                root -= weight * link.root;
-                mean -= weight * link.mean;
-                variance -= weight * rho;
-            }
-            let variance = variance.max(0.05);
+            let degrees = self.degrees(octave, ratio);
+            let link = self.link((level, octave), ratio, degrees);
+            let (root, mean, variance) = self.given(&link, &longer, ratio);
             a += root * root / variance;
             b += root * mean / variance;
             c += mean * mean / variance;
             // The variance of the standardised root, and what turns it into the variance itself.
             log_scale += libm::log(variance * link.relative) + 2.0 / 3.0 * libm::log(link.model);
             count += 1.0;
-            longer = [Some(link), longer[0]];
+            longer[1] = longer[0];
+            longer[0] = Some(link);
         }
         // a θ² − 2 b θ − 2 n ln θ is smallest at a θ² − b θ − n = 0.
         let theta = (b + libm::sqrt(b * b + 4.0 * a * count)) / (2.0 * a.max(f64::MIN_POSITIVE));
@@ -146,6 +155,7 @@ impl Likelihood<'_> {
         let enough = if self.sampling.windows > 1 { 6 } else { 3 };
         self.octaves.iter().enumerate().skip(self.from).filter(move |&(index, o)| {
             Some(index) != self.without
+                && o.samples > 0
                 && o.differences >= enough
                 && o.variance > 1e-200
                 && o.variance < 1e200 // far from where squares of it are lost
@@ -157,10 +167,8 @@ impl Likelihood<'_> {
     pub fn range(&self) -> Option<(f64, f64)> {
         let (_, shortest) = self.usable().next()?;
         let (_, longest) = self.usable().next_back()?;
-        let edge = 0.5 * libm::log(3e6);
-        Some((
-            0.5 * libm::log(3e-6) - libm::log(self.tau(longest)),
-            edge - libm::log(self.tau(shortest)),
-        ))
+        let low = 0.5 * libm::log(3e-6) - libm::log(self.tau(longest));
+        let high = 0.5 * libm::log(3e6) - libm::log(self.tau(shortest));
+        (low < high && low > f64::MIN && high < f64::MAX).then_some((low, high))
     }
 }
