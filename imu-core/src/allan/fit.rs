@@ -14,6 +14,10 @@
 //! standard deviations at τ is still there at 2τ and 4τ, half and a quarter of it (that is how a
 //! low-pass fades), hidden in a scatter that only grows by √2.
 //!
+//! The same contradiction arises where the *long* octaves are something else (flicker, drift). The
+//! shortest octaves tell: if they are white noise among themselves, no filter is at work, nothing is
+//! left out, and [`NoiseFit::misfit`] says that N and K are not all there is.
+//!
 //! **Not observable** is an answer: when the record cannot tell a parameter from zero (with 90 %
 //! confidence), the fit gives the bound below which it lies, and how long to record.
 //!
@@ -95,6 +99,10 @@ pub struct NoiseFit {
     pub used: Option<(usize, usize)>,
     /// Why shorter ones were not.
     pub contradiction: Option<Contradiction>,
+    /// The octaves used are not white noise plus random walk (a flicker, a drift, a vibration is in
+    /// them): N and K are of the curve of that form that comes closest, and scatter more than their
+    /// intervals say. The sum of squared standardised residuals is beyond n + 6√(2n).
+    pub misfit: bool,
 }
 
 /// −2 ln likelihood ratio at the ends of a two-sided 90 % interval: 1.645².
@@ -106,6 +114,8 @@ const UPPER: f64 = 1.6424;
 const CONTRADICTS: f64 = 16.0;
 /// So many octaves more are left out, where the cause of a contradiction fades.
 const MARGIN: usize = 2;
+/// So many of the shortest octaves tell a filter from noise that is not of this model.
+const WHITE_OCTAVES: usize = 5;
 /// The scan for contradictions starts where a record is this many averaging times long.
 const SCAN_FROM: f64 = 64.0;
 /// Step of the coarse search over ln(K/N).
@@ -244,6 +254,9 @@ fn contradiction(all: &Likelihood) -> Option<Contradiction> {
         likelihood.from = octave;
         let with = nearby(&likelihood, &longer)?;
         if contradicts(&with, &longer) {
+            if short_are_white(all) {
+                return None;
+            }
             // An outlier, or the first of many? The next shorter octave says.
             let sigmas = libm::sqrt(with.at.residual - longer.at.residual);
             let shorter =
@@ -258,6 +271,24 @@ fn contradiction(all: &Likelihood) -> Option<Contradiction> {
         }
     }
     None
+}
+
+/// Whether the shortest octaves are white noise among themselves. No filter leaves them so: then it
+/// is the longer ones that are something else, and N is to be had from the short ones.
+fn short_are_white(all: &Likelihood) -> bool {
+    let shortest = all.octaves.get(..WHITE_OCTAVES).unwrap_or_default();
+    let short = Likelihood { octaves: shortest, from: 0, ..*all };
+    short.usable().count() == WHITE_OCTAVES
+        && short.range().is_some_and(|(low, _)| {
+            let white = Point { x: low, at: short.at(low) };
+            !misfits(&short, &white)
+        })
+}
+
+/// Whether the octaves are further from a fit than their scatter explains.
+fn misfits(likelihood: &Likelihood, fit: &Point) -> bool {
+    let n = likelihood.usable().count() as f64;
+    fit.at.residual > n + 6.0 * libm::sqrt(2.0 * n)
 }
 
 /// Whether one more octave is further than 4 standard deviations from the fit without it: what a
@@ -278,8 +309,13 @@ fn nearby(likelihood: &Likelihood, neighbour: &Point) -> Option<Point> {
 
 fn fit(likelihood: &Likelihood) -> NoiseFit {
     let nothing = Parameter::NotObservable { upper90: f64::INFINITY, record_at_least_s: 0.0 };
-    let fit =
-        NoiseFit { noise_density: nothing, random_walk: nothing, used: None, contradiction: None };
+    let fit = NoiseFit {
+        noise_density: nothing,
+        random_walk: nothing,
+        used: None,
+        contradiction: None,
+        misfit: false,
+    };
     let (Some(range), Some((first, _)), Some((last, _))) =
         (likelihood.range(), likelihood.usable().next(), likelihood.usable().next_back())
     else {
@@ -294,6 +330,7 @@ fn fit(likelihood: &Likelihood) -> NoiseFit {
         random_walk: random_walk(likelihood, range, best),
         used: Some((first, last)),
         contradiction: None,
+        misfit: misfits(likelihood, &best),
     }
 }
 
@@ -367,8 +404,11 @@ fn random_walk(likelihood: &Likelihood, (low, high): (f64, f64), best: Point) ->
     let value = |point: &Point| libm::exp(0.5 * log_walk(point));
     if likelihood.at(low).minimum - best.at.minimum > UPPER {
         let estimate = value(&best);
-        let low90 = value(&walk_bound(likelihood, &best, low, INTERVAL)).min(estimate);
-        let high90 = value(&walk_bound(likelihood, &best, high, INTERVAL)).max(estimate);
+        // Where the walk decides alone, K scatters with the scale and not with the ratio K/N.
+        let scale = libm::sqrt(INTERVAL / best.at.information);
+        let end = |to| log_walk(&walk_bound(likelihood, &best, to, INTERVAL)) - log_walk(&best);
+        let low90 = estimate * libm::exp(-0.5 * libm::hypot(end(low).min(0.0), scale));
+        let high90 = estimate * libm::exp(0.5 * libm::hypot(end(high).max(0.0), scale));
         let sd = (high90 - low90) / (2.0 * libm::sqrt(INTERVAL));
         return Parameter::Observable { value: estimate, sd, low90, high90 };
     }

@@ -114,6 +114,23 @@ fn short_octaves_that_contradict_are_left_out() {
     });
 }
 
+/// Flicker in the middle: the short octaves are white, so N is theirs, and the fit says that white
+/// noise and random walk are not all.
+#[test]
+fn flicker_is_no_filter() {
+    let mut octaves = expected(0.001, 1e-6, 2_880_000, ALLAN);
+    for octave in &mut octaves {
+        if octave.differences > 0 {
+            octave.variance += 2e-4 * 2e-4;
+        }
+    }
+    let fit = fit_noise(&octaves, ALLAN);
+    assert_eq!(fit.contradiction, None);
+    assert!(fit.misfit);
+    assert!((value(fit.noise_density) / 0.001 - 1.0).abs() < 0.05, "{fit:?}");
+    assert!(!fit_noise(&expected(0.001, 1e-6, 2_880_000, ALLAN), ALLAN).misfit);
+}
+
 /// One octave that is off among good ones is no reason to throw away the shorter ones.
 #[test]
 fn a_single_outlier_is_no_contradiction() {

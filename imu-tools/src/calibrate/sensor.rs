@@ -209,10 +209,8 @@ impl SensorNoise {
         let tau0_s = self.tau0_s();
         let shortest_s = self.tau_used_s.map_or(0.0, |(first, _)| first);
         let found = maximum_likelihood::fit(means, tau0_s, shortest_s);
-        let noise =
-            |e: Estimate| AxisNoise { noise_density: e.noise_density, random_walk: e.random_walk };
-        self.axes = found.axes.map(noise);
-        self.pooled = noise(found.pooled);
+        self.axes = found.axes;
+        self.pooled = found.pooled;
         self.tau_used_s = Some((found.block_s, self.stamps.span_s));
     }
 
