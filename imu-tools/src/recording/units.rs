@@ -122,7 +122,7 @@ fn plain(name: &str) -> String {
             c => plain.push(c),
         }
     }
-    plain
+    plain.replace("per", "/")
 }
 
 impl FromStr for TimeUnit {
@@ -186,6 +186,7 @@ mod tests {
         assert_eq!("m s^-2".parse(), Ok(ForceUnit::MPerS2));
         assert_eq!("m/s²".parse(), Ok(ForceUnit::MPerS2));
         assert_eq!("G".parse(), Ok(ForceUnit::G));
+        assert_eq!("deg per s".parse(), Ok(RateUnit::DegPerS));
         assert!("furlong".parse::<ForceUnit>().is_err());
     }
 

@@ -1,5 +1,7 @@
 //! What stands in which column: told by the user, by the header's names, or by custom.
 
+use std::str::FromStr;
+
 use crate::recording::{ForceUnit, RateUnit, TimeUnit};
 
 /// What separates fields.
@@ -62,17 +64,61 @@ pub enum Column {
     Force(u8),
 }
 
+/// What the names of columns say of their unit.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Told<U> {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// This unit.
+    Unit(U),
+    /// A unit that nobody knows, or two of them: what is wrong, in words.
+    Unclear(String),
+}
+
+impl<U: FromStr<Err = String> + Copy + PartialEq> Told<U> {
+    /// The unit given by the user, or else the one told.
+    ///
+    /// # Errors
+    /// What is wrong with the one told, in words.
+    pub fn unless(&self, given: Option<U>) -> Result<Option<U>, &str> {
+        match (given, self) {
+            (Some(given), _) => Ok(Some(given)),
+            (None, Self::Nothing) => Ok(None),
+            (None, Self::Unit(unit)) => Ok(Some(*unit)),
+            (None, Self::Unclear(what)) => Err(what),
+        }
+    }
+
+    /// Takes in what one column says; the first trouble stays.
+    fn hear(&mut self, column: &[u8], unit: Option<&str>) {
+        let unit = unit.unwrap_or_default().trim_matches(|c| "[]() ".contains(c));
+        if unit.is_empty() || matches!(self, Self::Unclear(_)) {
+            return;
+        }
+        let unclear =
+            |what| Self::Unclear(format!("column '{}': {what}", String::from_utf8_lossy(column)));
+        *self = match unit.parse() {
+            Err(what) => unclear(what),
+            Ok(unit) if matches!(self, Self::Unit(other) if *other != unit) => {
+                unclear("its unit is not that of the sensor's other axes".into())
+            }
+            Ok(unit) => Self::Unit(unit),
+        };
+    }
+}
+
 /// Meanings of all columns, and the units that their names tell.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Columns {
     /// From the first to the last of interest.
     pub columns: Vec<Column>,
     /// Unit of time.
-    pub time: Option<TimeUnit>,
+    pub time: Told<TimeUnit>,
     /// Unit of angular rate.
-    pub rate: Option<RateUnit>,
+    pub rate: Told<RateUnit>,
     /// Unit of specific force.
-    pub force: Option<ForceUnit>,
+    pub force: Told<ForceUnit>,
 }
 
 impl Columns {
@@ -110,16 +156,16 @@ impl Columns {
     /// What is missing, in words.
     pub fn from_names<'a>(names: impl Iterator<Item = &'a [u8]>) -> Result<Self, String> {
         let mut found = Self::default();
-        for name in names {
-            let name = Name::new(name);
+        for text in names {
+            let name = Name::new(text);
             let column = name.meaning();
-            let unit = name.unit.as_deref().unwrap_or_default();
+            let unit = name.unit.as_deref();
             let taken = column != Column::Other && found.columns.contains(&column);
             match column {
                 _ if taken => {}
-                Column::Time => found.time = unit.parse().ok(),
-                Column::Rate(_) => found.rate = found.rate.or(unit.parse().ok()),
-                Column::Force(_) => found.force = found.force.or(unit.parse().ok()),
+                Column::Time => found.time.hear(text, unit),
+                Column::Rate(_) => found.rate.hear(text, unit),
+                Column::Force(_) => found.force.hear(text, unit),
                 Column::Other => {}
             }
             found.columns.push(if taken { Column::Other } else { column });
@@ -189,16 +235,33 @@ impl Name {
         if unit.is_none() {
             let last = words.iter().rposition(|w| axis(w).is_some() || is_time(w)).map(|at| at + 1);
             if let Some(last) = last.filter(|&last| last < words.len()) {
-                let tail = words.split_off(last);
-                unit = Some(match tail.as_slice() {
-                    [over, under] if !under.starts_with(|c: char| c.is_ascii_digit()) => {
-                        format!("{over}/{under}")
-                    }
-                    tail => tail.concat(),
-                });
+                unit = Some(quotient(&words.split_off(last)));
             }
         }
-        Self { words, unit }
+        let mut name = Self { words, unit };
+        if name.unit.is_none() {
+            name.take_inner_unit();
+        }
+        name
+    }
+
+    /// Takes out a unit between sensor and axis: gyro_dps_x, acc_m_s2_x.
+    fn take_inner_unit(&mut self) {
+        let Some((axis, before)) = self.words.split_last() else { return };
+        if !["x", "y", "z"].contains(&axis.as_str()) {
+            return;
+        }
+        for at in 1..before.len() {
+            let (sensor, unit) = before.split_at(at);
+            let unit = quotient(unit);
+            if named(sensor, &GYROSCOPE) && unit.parse::<RateUnit>().is_ok()
+                || named(sensor, &ACCELEROMETER) && unit.parse::<ForceUnit>().is_ok()
+            {
+                self.words.drain(at..before.len());
+                self.unit = Some(unit);
+                return;
+            }
+        }
     }
 
     fn meaning(&self) -> Column {
@@ -211,19 +274,31 @@ impl Name {
             return Column::Time;
         }
         let Some((stem, axis)) = axis(last) else { return Column::Other };
-        let named = |list: &[&str]| {
-            let stems = self.words.iter().take(self.words.len() - 1).map(String::as_str);
-            let stems = stems.chain([stem]);
-            let joined: String = self.words.iter().take(self.words.len() - 1).cloned().collect();
-            let one_piece = joined + stem;
-            let tail = list.iter().filter(|w| w.len() > 3).any(|w| one_piece.ends_with(w));
-            tail || stems.into_iter().any(|w| list.contains(&w))
-        };
-        match (named(&GYROSCOPE), named(&ACCELEROMETER)) {
+        let mut stems = self.words.clone();
+        stems.pop();
+        stems.push(stem.to_owned());
+        match (named(&stems, &GYROSCOPE), named(&stems, &ACCELEROMETER)) {
             (true, false) => Column::Rate(axis),
             (false, true) => Column::Force(axis),
             _ => Column::Other,
         }
+    }
+}
+
+/// Whether one of these words, or the last of them written as one, is of `list`.
+fn named(words: &[String], list: &[&str]) -> bool {
+    let one_piece = words.concat();
+    let tail = list.iter().filter(|w| w.len() > 3).any(|w| one_piece.ends_with(w));
+    tail || words.iter().any(|w| list.contains(&w.as_str()))
+}
+
+/// The unit that words of a name make up: `rad` and `s` are rad/s.
+fn quotient(words: &[String]) -> String {
+    match words {
+        [over, under] if !under.starts_with(|c: char| c.is_ascii_digit()) => {
+            format!("{over}/{under}")
+        }
+        words => words.concat(),
     }
 }
 
@@ -245,6 +320,10 @@ mod tests {
 
     fn named(header: &str) -> Result<Columns, String> {
         Columns::from_names(Separator::Byte(b',').split(header.as_bytes()))
+    }
+
+    fn told<U>(unit: Option<U>) -> Told<U> {
+        unit.map_or(Told::Nothing, Told::Unit)
     }
 
     #[test]
@@ -293,10 +372,41 @@ mod tests {
                 None,
                 Some(ForceUnit::MilliG),
             ),
+            (
+                "time_s,gyro_dps_x,gyro_dps_y,gyro_dps_z,acc_g_x,acc_g_y,acc_g_z",
+                Some(TimeUnit::Seconds),
+                Some(RateUnit::DegPerS),
+                Some(ForceUnit::G),
+            ),
+            (
+                "t,angular_velocity_rad_s_x,angular_velocity_rad_s_y,angular_velocity_rad_s_z,\
+                 acc_m_s2_x,acc_m_s2_y,acc_m_s2_z",
+                None,
+                rate,
+                force,
+            ),
+            (
+                "t,gyro_x_deg_per_s,gyro_y_deg_per_s,gyro_z_deg_per_s,a_ms2_x,a_ms2_y,a_ms2_z",
+                None,
+                Some(RateUnit::DegPerS),
+                force,
+            ),
         ] {
+            let (time, rate, force) = (told(time), told(rate), told(force));
             let expected = Columns { columns: customary.columns.clone(), time, rate, force };
             assert_eq!(named(header), Ok(expected), "{header}");
         }
+    }
+
+    #[test]
+    fn units_that_nobody_knows_are_no_si_units() {
+        let time = named("t [min],gx,gy,gz").unwrap().time;
+        assert!(time.unless(None).unwrap_err().contains("'t [min]': 'min' is no unit of time"));
+        assert_eq!(time.unless(Some(TimeUnit::Seconds)), Ok(Some(TimeUnit::Seconds)));
+        let rate = named("t,gyro_x_rpm,gyro_y_rpm,gyro_z_rpm").unwrap().rate;
+        assert!(rate.unless(None).unwrap_err().contains("'rpm' is no unit of angular rate"));
+        let force = named("t,ax [g],ay [mg],az [g]").unwrap().force;
+        assert!(force.unless(None).unwrap_err().contains("'ay [mg]': its unit is not that of"));
     }
 
     #[test]

@@ -114,7 +114,8 @@ impl CsvReader {
         // The last line at hand may be cut.
         let whole = times.len().saturating_sub(1).max(1);
         let of_data = || time_unit::from_data(times.get(..whole).unwrap_or_default());
-        let time = options.time_unit.or(found.time);
+        let time = found.time.unless(options.time_unit);
+        let time = time.map_err(|what| unclear(&path, what, "--time-unit"))?;
         let time = time.map_or_else(|| (of_data(), true), |unit| (unit, false));
         let names = |column: fn(u8) -> Column| {
             let at = found.columns.iter().position(|c| *c == column(0));
@@ -132,7 +133,7 @@ impl CsvReader {
             columns: Vec::new(),
             input,
         };
-        csv.take_units(&path, options, &found, time);
+        csv.take_units(&path, options, &found, time)?;
         csv.columns = found.columns;
         csv.input.consume(bom);
         for _ in 0..aside {
@@ -149,13 +150,15 @@ impl CsvReader {
         options: &ReadOptions,
         found: &Columns,
         (time, guessed): (TimeUnit, bool),
-    ) {
+    ) -> Result<(), Error> {
         let mut told = Vec::new();
         if guessed {
             told.push(format!("time as {}", time.symbol()));
         }
-        let rate = options.gyro_unit.or(found.rate);
-        let force = options.accel_unit.or(found.force);
+        let rate = found.rate.unless(options.gyro_unit);
+        let rate = rate.map_err(|what| unclear(path, what, "--gyro-unit"))?;
+        let force = found.force.unless(options.accel_unit);
+        let force = force.map_err(|what| unclear(path, what, "--accel-unit"))?;
         if found.has(Column::Rate(0)) {
             if rate.is_none() {
                 told.push("angular rate as rad/s (--gyro-unit)".into());
@@ -175,6 +178,7 @@ impl CsvReader {
         }
         self.rate = rate.unwrap_or(RateUnit::RadPerS).to_rad_s();
         self.force = force.unwrap_or(ForceUnit::MPerS2).to_m_s2();
+        Ok(())
     }
 
     /// Length of the next line with its end, all of it at hand; `None` at the end of the file.
@@ -270,6 +274,11 @@ impl CsvReader {
         self.notes.push(Note::Warning(note));
         Ok(())
     }
+}
+
+/// The error for a unit in the header that cannot be used.
+fn unclear(path: &str, what: &str, flag: &str) -> Error {
+    Error::data(format!("in the header of {path}, {what}; say which it is with {flag}"))
 }
 
 /// The columns that one of the header lines names, the nearest to the data first; `None` without
