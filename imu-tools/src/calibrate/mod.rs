@@ -119,6 +119,8 @@ pub struct SensorNoise {
     pub tau_used_s: Option<(f64, f64)>,
     /// Why shorter τ did not: they contradict the longer ones.
     pub contradiction: Option<Contradiction>,
+    /// White noise and random walk are not all there is on these axes.
+    pub misfit: [bool; 3],
     /// The variance at every τ that has one, shortest first.
     pub deviation: Vec<Deviation>,
 }
@@ -191,6 +193,17 @@ pub fn calibrate(
         .unwrap_or(0);
     if most < FEWEST_SAMPLES {
         return Err(too_few(path, most, options));
+    }
+    for sensor in [&gyroscope, &accelerometer].into_iter().flatten() {
+        if sensor.rejected * 10 > sensor.stamps.samples {
+            return Err(Error::data(format!(
+                "{path}: {} of {} samples of the {} are not finite or far beyond what its first ones \
+                 show; leave out its beginning with --from, or mend the recording",
+                sensor.rejected,
+                sensor.stamps.samples,
+                sensor.kind.name()
+            )));
+        }
     }
     if let Some(sensor) = &accelerometer {
         match gravity::check(sensor.mean) {

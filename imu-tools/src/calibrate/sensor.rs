@@ -199,6 +199,7 @@ fn noise(
         pooled: AxisNoise { noise_density: pooled.noise_density, random_walk: pooled.random_walk },
         tau_used_s: pooled.used.map(|(first, last)| (at(first), at(last))),
         contradiction,
+        misfit: fits.map(|f| f.misfit),
         deviation,
     }
 }
@@ -241,6 +242,18 @@ impl SensorNoise {
         self.deviation.iter().filter_map(|d| d.octaves.get(axis).copied()).collect()
     }
 
+    /// How many times the least noisy axis the noisiest one has of white noise, if that is twice or
+    /// more.
+    fn spread_of_axes(&self) -> Option<f64> {
+        let densities = self.axes.iter().filter_map(|axis| match axis.noise_density {
+            Parameter::Observable { value, .. } => Some(value),
+            Parameter::NotObservable { .. } => None,
+        });
+        let (least, most) =
+            densities.fold((f64::INFINITY, 0.0_f64), |(low, high), n| (low.min(n), high.max(n)));
+        (most >= 2.0 * least).then(|| most / least)
+    }
+
     /// What its user should know before believing it.
     pub(super) fn warnings(&self) -> Vec<String> {
         let name = self.kind.name();
@@ -248,9 +261,23 @@ impl SensorNoise {
         if let Some(contradiction) = self.contradiction {
             let longest = self.deviation.get(contradiction.octave).map_or(0.0, |d| d.tau_s);
             warnings.push(format!(
-                "{name}: averaging times up to {longest:.3} s contradict the longer ones by {:.0} \
-                 standard deviations (a low-pass filter in the sensor does that) and decide nothing",
+                "{name}: averaging times up to {longest:.3} s decide nothing: they contradict the \
+                 longer ones by {:.0} standard deviations, as a low-pass filter or a vibration makes \
+                 them do",
                 contradiction.sigmas
+            ));
+        }
+        for (axis, _) in ["x", "y", "z"].iter().zip(self.misfit).filter(|(_, misfit)| *misfit) {
+            warnings.push(format!(
+                "{name}: axis {axis} has more in it than white noise and a random walk (bias \
+                 instability, drift, temperature, motion): take its K for an upper limit, and the \
+                 intervals for too narrow"
+            ));
+        }
+        if let Some(times) = self.spread_of_axes() {
+            warnings.push(format!(
+                "{name}: one axis has {times:.1} times the white noise of another; what is pooled \
+                 fits neither: take each axis by itself"
             ));
         }
         if self.rejected > 0 {
