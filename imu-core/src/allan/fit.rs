@@ -2,7 +2,7 @@
 //!
 //! The Allan variance of white noise and random walk is N²/τ + K²τ/3 (IEEE Std 952-1997, annex C;
 //! Hadamard: N²/τ + K²τ/6). N and K are fitted to the octaves of a ladder by the likelihood of
-//! their logarithms, correlations and all: over 4 h the error of K is within a few per cent of what
+//! their cube roots, correlations and all: over 4 h the error of K is within a few per cent of what
 //! is possible at all (`docs/estimators.md` has the Monte Carlo), without a matrix, a heap or a
 //! failure.
 //!
@@ -39,22 +39,10 @@
 //! assert!(matches!(fit.random_walk, Parameter::NotObservable { .. }));
 //! ```
 
-use super::likelihood::{AtRatio, Likelihood};
-use super::{Difference, Octave};
-
-/// How the octaves of a fit came about.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sampling {
-    /// Time between samples, s.
-    pub tau0_s: f64,
-    /// Allan or Hadamard.
-    pub difference: Difference,
-    /// Windows per τ of the ladder: 1 or 4.
-    pub windows: u8,
-    /// How many independent records of the same noise are averaged in the octaves
-    /// ([`average_octaves`]); 1 for a single axis.
-    pub records: u32,
-}
+use super::likelihood::Likelihood;
+use super::scan::{Contradiction, contradiction};
+use super::search::{Point, best, misfits};
+use super::{Octave, Sampling};
 
 /// A noise parameter as far as a record shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,21 +67,12 @@ pub enum Parameter {
     },
 }
 
-/// Short τ that contradict the longer ones.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contradiction {
-    /// Index of the longest octave that was left out; all shorter ones were, too.
-    pub octave: usize,
-    /// By how many standard deviations the longest one that contradicts does so.
-    pub sigmas: f64,
-}
-
 /// White noise and random walk of one signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseFit {
     /// N, in the signal's unit /√Hz (angle or velocity random walk).
     pub noise_density: Parameter,
-    /// K, in the signal's unit /(s·√Hz) = unit/s^1.5·… (rate or acceleration random walk).
+    /// K, in the signal's unit /s/√Hz (rate or acceleration random walk).
     pub random_walk: Parameter,
     /// Indices of the shortest and longest octave that were used; `None`: there was nothing to use.
     pub used: Option<(usize, usize)>,
@@ -110,16 +89,6 @@ const INTERVAL: f64 = 2.7055;
 /// The same for a bound, one-sided 90 %: 1.2816². A parameter for which zero lies within such a
 /// bound is not observable.
 const UPPER: f64 = 1.6424;
-/// Contradiction of an octave, squared standard deviations.
-const CONTRADICTS: f64 = 16.0;
-/// So many octaves more are left out, where the cause of a contradiction fades.
-const MARGIN: usize = 2;
-/// So many of the shortest octaves tell a filter from noise that is not of this model.
-const WHITE_OCTAVES: usize = 5;
-/// The scan for contradictions starts where a record is this many averaging times long.
-const SCAN_FROM: f64 = 64.0;
-/// Step of the coarse search over ln(K/N).
-const COARSE: f64 = 0.6;
 /// Half-distance of numerical derivatives over ln(K/N).
 const DELTA: f64 = 0.02;
 
@@ -193,118 +162,6 @@ pub fn fitted_edf(octave: &Octave, sampling: Sampling, fit: &NoiseFit) -> f64 {
     };
     let records = f64::from(sampling.records.max(1));
     records * Likelihood { octaves: &[], sampling, from: 0, without: None }.degrees(octave, ratio)
-}
-
-/// A point of the search: ln(K/N), and the likelihood there.
-#[derive(Clone, Copy)]
-struct Point {
-    x: f64,
-    at: AtRatio,
-}
-
-/// The minimum over ln(K/N) in low…high by golden section.
-fn refine(likelihood: &Likelihood, mut low: f64, mut high: f64) -> Point {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let point = |x| Point { x, at: likelihood.at(x) };
-    let mut a = point(high - GOLDEN * (high - low));
-    let mut b = point(low + GOLDEN * (high - low));
-    while high - low > 2e-4 {
-        if a.at.minimum < b.at.minimum {
-            high = b.x;
-            b = a;
-            a = point(high - GOLDEN * (high - low));
-        } else {
-            low = a.x;
-            a = b;
-            b = point(low + GOLDEN * (high - low));
-        }
-    }
-    if a.at.minimum < b.at.minimum { a } else { b }
-}
-
-/// The best ratio in the whole range.
-fn best(likelihood: &Likelihood, (low, high): (f64, f64)) -> Point {
-    let mut best = Point { x: low, at: likelihood.at(low) };
-    let steps = libm::ceil((high - low) / COARSE).clamp(1.0, 200.0);
-    for i in 1..=steps as u32 {
-        let x = low + (high - low) * f64::from(i) / steps;
-        let at = likelihood.at(x);
-        if at.minimum < best.at.minimum {
-            best = Point { x, at };
-        }
-    }
-    refine(likelihood, (best.x - COARSE).max(low), (best.x + COARSE).min(high))
-}
-
-/// How long the record is, in seconds, missing samples not counted.
-fn span(likelihood: &Likelihood) -> f64 {
-    likelihood.octaves.first().map_or(0.0, |o| o.differences as f64 + 1.0)
-        * likelihood.sampling.tau0_s
-}
-
-/// Looks for short octaves that contradict the longer ones. Its memory is free again when the fit
-/// begins.
-#[inline(never)]
-fn contradiction(all: &Likelihood) -> Option<Contradiction> {
-    let span = span(all);
-    let start = all.octaves.iter().position(|o| all.tau(o) * SCAN_FROM * 2.0 > span)?;
-    let mut likelihood = Likelihood { from: start, ..*all };
-    let mut longer = best(&likelihood, likelihood.range()?);
-    for octave in (0..start).rev() {
-        likelihood.from = octave;
-        let with = nearby(&likelihood, &longer)?;
-        if contradicts(&with, &longer) {
-            if short_are_white(all) {
-                return None;
-            }
-            // An outlier, or the first of many? The next shorter octave says.
-            let sigmas = libm::sqrt(with.at.residual - longer.at.residual);
-            let shorter =
-                Likelihood { from: octave.saturating_sub(1), without: Some(octave), ..likelihood };
-            if octave == 0 || contradicts(&nearby(&shorter, &longer)?, &longer) {
-                let octave = (octave + MARGIN).min(start.saturating_sub(1));
-                return Some(Contradiction { octave, sigmas });
-            }
-            likelihood.without = Some(octave);
-        } else {
-            longer = with;
-        }
-    }
-    None
-}
-
-/// Whether the shortest octaves are white noise among themselves. No filter leaves them so: then it
-/// is the longer ones that are something else, and N is to be had from the short ones.
-fn short_are_white(all: &Likelihood) -> bool {
-    let shortest = all.octaves.get(..WHITE_OCTAVES).unwrap_or_default();
-    let short = Likelihood { octaves: shortest, from: 0, ..*all };
-    short.usable().count() == WHITE_OCTAVES
-        && short.range().is_some_and(|(low, _)| {
-            let white = Point { x: low, at: short.at(low) };
-            !misfits(&short, &white)
-        })
-}
-
-/// Whether the octaves are further from a fit than their scatter explains.
-fn misfits(likelihood: &Likelihood, fit: &Point) -> bool {
-    let n = likelihood.usable().count() as f64;
-    fit.at.residual > n + 6.0 * libm::sqrt(2.0 * n)
-}
-
-/// Whether one more octave is further than 4 standard deviations from the fit without it: what a
-/// Gaussian datum adds to the sum of squares is its standardised residual, squared.
-fn contradicts(with: &Point, without: &Point) -> bool {
-    with.at.residual - without.at.residual > CONTRADICTS
-}
-
-/// The minimum near a neighbouring fit, or wherever it is if that fit did not know better.
-fn nearby(likelihood: &Likelihood, neighbour: &Point) -> Option<Point> {
-    let (low, high) = likelihood.range()?;
-    let within = |x: f64| x.max(low).min(high);
-    let (from, to) = (within(neighbour.x - COARSE), within(neighbour.x + COARSE));
-    let point = refine(likelihood, from, to);
-    let at_the_edge = (point.x - neighbour.x).abs() > 0.9 * COARSE;
-    Some(if at_the_edge { best(likelihood, (low, high)) } else { point })
 }
 
 fn fit(likelihood: &Likelihood) -> NoiseFit {
@@ -413,7 +270,7 @@ fn random_walk(likelihood: &Likelihood, (low, high): (f64, f64), best: Point) ->
         return Parameter::Observable { value: estimate, sd, low90, high90 };
     }
     let bound = walk_bound(likelihood, &best, high, UPPER);
-    let span = span(likelihood);
+    let span = likelihood.span();
     if bound.x >= high {
         return Parameter::NotObservable { upper90: f64::INFINITY, record_at_least_s: 2.0 * span };
     }
@@ -456,7 +313,7 @@ fn noise_density(likelihood: &Likelihood, (low, high): (f64, f64), best: Point) 
     let log_upper = at.log_white + libm::sqrt(UPPER / at.information);
     Parameter::NotObservable {
         upper90: libm::exp(0.5 * log_upper),
-        record_at_least_s: span(likelihood) * (UPPER / against_zero.max(0.01)).max(2.0),
+        record_at_least_s: likelihood.span() * (UPPER / against_zero.max(0.01)).max(2.0),
     }
 }
 

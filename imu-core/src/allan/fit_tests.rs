@@ -1,3 +1,4 @@
+use super::super::Difference;
 use super::*;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

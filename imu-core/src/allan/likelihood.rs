@@ -12,8 +12,7 @@
 //! equation: what is left is a function of κ alone.
 
 use super::correlation::covariance;
-use super::fit::Sampling;
-use super::{Difference, Mixture, Octave, edf};
+use super::{Difference, Mixture, Octave, Sampling, edf};
 
 /// The octaves of a fit: from index `from` on, but for one.
 #[derive(Clone, Copy)]
@@ -55,6 +54,11 @@ impl Likelihood<'_> {
     /// Averaging time of an octave in seconds.
     pub fn tau(&self, octave: &Octave) -> f64 {
         octave.samples as f64 * self.sampling.tau0_s
+    }
+
+    /// How long the record is, in seconds, missing samples not counted.
+    pub fn span(&self) -> f64 {
+        self.octaves.first().map_or(0.0, |o| o.differences as f64 + 1.0) * self.sampling.tau0_s
     }
 
     /// White and walk parts of the variance of an octave, for N = 1 and K = `ratio`.

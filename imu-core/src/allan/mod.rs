@@ -12,14 +12,14 @@ mod ladder;
 mod learn;
 mod likelihood;
 mod reading;
+mod scan;
+mod search;
 mod total;
 
 pub use chi_square::{chi_square_quantile, chi_square_tails};
 pub use edf::{Difference, Mixture, edf, interval};
-pub use fit::{
-    Contradiction, NoiseFit, Parameter, Sampling, average_octaves, fit_noise, fit_noise_from,
-    fitted_edf,
-};
+pub use fit::{NoiseFit, Parameter, average_octaves, fit_noise, fit_noise_from, fitted_edf};
 pub use ladder::{AllanLadder, HadamardLadder, Ladder};
-pub use reading::Octave;
+pub use reading::{Octave, Sampling};
+pub use scan::Contradiction;
 pub use total::{Total, TwoStage};

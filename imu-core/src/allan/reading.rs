@@ -1,4 +1,6 @@
-//! What a ladder shows of one signal at one averaging time.
+//! What a ladder shows of one signal at one averaging time, and how that came about.
+
+use super::Difference;
 
 /// The variance at one averaging time τ, and how much stands behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,4 +22,18 @@ impl Octave {
     pub fn deviation(&self) -> f64 {
         libm::sqrt(self.variance)
     }
+}
+
+/// How the octaves of a fit came about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// Time between samples, s.
+    pub tau0_s: f64,
+    /// Allan or Hadamard.
+    pub difference: Difference,
+    /// Windows per τ of the ladder: 1 or 4.
+    pub windows: u8,
+    /// How many independent records of the same noise are averaged in the octaves
+    /// ([`average_octaves`]); 1 for a single axis.
+    pub records: u32,
 }
