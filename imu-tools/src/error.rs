@@ -16,7 +16,7 @@ pub enum Error {
     #[error("{0}")]
     Data(String),
     /// The operating system refused: exit code 1.
-    #[error("cannot {action} {}: {}", path.display(), reason(source))]
+    #[error("cannot {action} {}: {}", name(path), reason(source))]
     Io {
         /// What was being done, as a verb: "read", "write".
         action: &'static str,
@@ -52,15 +52,25 @@ impl Error {
     }
 }
 
+/// A path as a person knows it: `-` is only ever written to.
+fn name(path: &Path) -> String {
+    match path.to_str() {
+        Some("-") => "the standard output".into(),
+        _ => path.display().to_string(),
+    }
+}
+
 /// The common refusals with the way out; the system's own words for the others.
 fn reason(source: &io::Error) -> String {
     use io::ErrorKind::{
-        IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem, StorageFull,
+        AlreadyExists, IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem,
+        StorageFull,
     };
     match source.kind() {
         NotFound => "there is no such file or folder".into(),
         PermissionDenied => "permission denied; choose another folder or mend its rights".into(),
         StorageFull => "the disk is full; free some space or choose another folder".into(),
+        AlreadyExists => "there is a file of that name; choose another".into(),
         IsADirectory => "it is a folder; name a file in it".into(),
         NotADirectory => "a part of its path is a file, not a folder".into(),
         ReadOnlyFilesystem => "the disk is read-only; choose another folder".into(),
@@ -82,5 +92,7 @@ mod tests {
             full.to_string(),
             "cannot write a.bag: the disk is full; free some space or choose another folder"
         );
+        let full = Error::io("write", Path::new("-"), io::ErrorKind::StorageFull.into());
+        assert!(full.to_string().starts_with("cannot write the standard output: "), "{full}");
     }
 }

@@ -3,6 +3,7 @@
 //! An [`Output`] is a temporary file in the folder of its target, renamed to it by
 //! [`Output::finish`]. Dropped before that, it leaves nothing behind. `-` is the standard output,
 //! and a path that exists but is no regular file (`/dev/null`, a named pipe) is written in place.
+//! A program that is killed in between leaves its temporary file, `.imu-XXXXXX.part`: delete it.
 //!
 //! ```
 //! use imu_tools::output::Output;
@@ -48,19 +49,20 @@ impl Output {
             return Ok(Self { path: path.to_owned(), to: To::Stdout(io::stdout()) });
         }
         // A link is followed, so that the file behind it is replaced and not the link.
-        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let path = target(path);
         let to = match fs::metadata(&path) {
             Ok(there) if there.is_dir() => {
                 return Err(refused(io::ErrorKind::IsADirectory.into()));
+            }
+            Err(_) if path.is_symlink() => {
+                return Err(refused(io::Error::other(
+                    "it is a link that leads nowhere; name the file itself",
+                )));
             }
             Ok(there) if !there.is_file() => {
                 To::InPlace(File::options().write(true).open(&path).map_err(refused)?)
             }
             _ => {
-                let folder = match path.parent() {
-                    Some(folder) if !folder.as_os_str().is_empty() => folder,
-                    _ => Path::new("."),
-                };
                 let mut builder = Builder::new();
                 builder.prefix(".imu-").suffix(".part");
                 #[cfg(unix)]
@@ -69,7 +71,7 @@ impl Output {
                     // What any new file gets: the umask takes its part away.
                     builder.permissions(fs::Permissions::from_mode(0o666));
                 }
-                To::Whole(builder.tempfile_in(folder).map_err(|e| refused(bare(e)))?)
+                To::Whole(builder.tempfile_in(folder(&path)).map_err(|e| refused(bare(e)))?)
             }
         };
         Ok(Self { path, to })
@@ -121,6 +123,33 @@ impl Output {
     }
 }
 
+/// Where a path leads: through all links, also to a file that does not exist yet.
+pub(crate) fn target(path: &Path) -> PathBuf {
+    /// So many links in a row are a loop.
+    const LINKS: usize = 40;
+    let mut path = path.to_owned();
+    for _ in 0..LINKS {
+        if fs::metadata(&path).is_ok() {
+            // What is no file (a pipe behind /dev/stdout) may have no other name.
+            return fs::canonicalize(&path).unwrap_or(path);
+        }
+        let Ok(link) = fs::read_link(&path) else { break };
+        path = folder(&path).join(link);
+    }
+    match (fs::canonicalize(folder(&path)), path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path,
+    }
+}
+
+/// The folder that a file stands in.
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
 /// The system's error without the temporary name that `tempfile` adds to it.
 fn bare(error: io::Error) -> io::Error {
     error.kind().into()
@@ -144,6 +173,30 @@ mod tests {
         drop(output);
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(files(folder.path()), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_nothing_yet_is_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        let link = folder.path().join("link");
+        std::os::unix::fs::symlink("a", &link).unwrap();
+        let mut output = Output::create(&link).unwrap();
+        output.write(b"new").unwrap();
+        output.finish().unwrap();
+        assert_eq!(fs::read_link(&link).unwrap(), Path::new("a"));
+        assert_eq!(fs::read(folder.path().join("a")).unwrap(), b"new");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_itself_is_refused_and_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let link = folder.path().join("link");
+        std::os::unix::fs::symlink("link", &link).unwrap();
+        let error = Output::create(&link).unwrap_err();
+        assert!(error.to_string().contains("a link that leads nowhere"), "{error}");
+        assert_eq!(fs::read_link(&link).unwrap(), Path::new("link"));
     }
 
     #[test]

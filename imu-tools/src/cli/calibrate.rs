@@ -56,7 +56,7 @@ pub(super) struct Calibrate {
     #[arg(long)]
     bag_time: bool,
     /// Columns of a CSV: t, gx, gy, gz, ax, ay, az and - for one to pass over
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     columns: Option<String>,
     /// Unit of angular rate: rad/s, deg/s, ...
     #[arg(long, value_name = "UNIT")]
@@ -97,10 +97,10 @@ impl Calibrate {
             return super::print(&format!("{:#}\n", report::json::calibration(&calibration)));
         }
         for remark in &calibration.remarks {
-            eprintln!("imu: {remark}");
+            super::say(&format!("imu: {remark}"));
         }
         for warning in &calibration.warnings {
-            eprintln!("imu: warning: {warning}");
+            super::say(&format!("imu: warning: {warning}"));
         }
         super::print(&report::table::calibration(&calibration))
     }

@@ -55,7 +55,7 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             ExitCode::SUCCESS
         }
         Err(error) => {
-            eprintln!("imu: {error}");
+            say(&format!("imu: {error}"));
             ExitCode::from(error.exit_code())
         }
     }
@@ -66,6 +66,12 @@ fn print(text: &str) -> Result<(), Error> {
     let mut stdout = io::stdout().lock();
     let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
     written.map_err(|source| Error::io("write", Path::new("-"), source))
+}
+
+/// Says a sentence on the standard error, where that can be written.
+fn say(sentence: &str) {
+    // A program that cannot complain has nobody left to tell.
+    let _ = writeln!(io::stderr(), "{sentence}");
 }
 
 /// Prints clap's help as it is, and its complaints as one sentence.
@@ -84,7 +90,7 @@ fn refuse(refusal: &clap::Error) -> ExitCode {
             ExitCode::from(2)
         }
         _ => {
-            eprintln!("imu: {}", sentence(&refusal.render().to_string()));
+            say(&format!("imu: {}", sentence(&refusal.render().to_string())));
             ExitCode::from(2)
         }
     }

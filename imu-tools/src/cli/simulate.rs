@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::progress;
 use crate::error::Error;
+use crate::output;
 use crate::recording::{self, Block, Sink};
 use crate::scene::{
     Path as Motion, Preset, Rate, Scene, Simulator, TruthWriter, display_duration, parse_duration,
@@ -56,7 +57,7 @@ pub(super) struct Simulate {
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     rate: Option<f64>,
     /// Seed of the random numbers [default: the scene's, 1]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Limit the bandwidth of both sensors by a one-pole low-pass at this frequency
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
@@ -69,7 +70,7 @@ pub(super) struct Simulate {
 impl Simulate {
     pub(super) fn run(self) -> Result<(), Error> {
         let scene = self.scene()?;
-        if self.truth.as_deref() == Some(&self.output) {
+        if self.truth.as_deref().is_some_and(|truth| same_target(truth, &self.output)) {
             return Err(Error::usage(format!(
                 "the recording and the truth cannot both go to {}: name two files",
                 self.output.display()
@@ -84,7 +85,7 @@ impl Simulate {
         if let Some(truth) = truth {
             truth.finish()?;
         }
-        eprintln!("imu: wrote {}", self.summary(&scene, samples));
+        super::say(&format!("imu: wrote {}", self.summary(&scene, samples)));
         Ok(())
     }
 
@@ -123,7 +124,8 @@ impl Simulate {
             None => String::new(),
         };
         format!(
-            "{samples} samples of both sensors ({} at {} Hz, seed {}) to {to}{truth}",
+            "{samples} {} of both sensors ({} at {} Hz, seed {}) to {to}{truth}",
+            if samples == 1 { "sample" } else { "samples" },
             display_duration(scene.duration_ns),
             scene.rate.hz(),
             scene.seed,
@@ -150,6 +152,16 @@ fn write(
     }
 }
 
+/// Whether two paths lead to one file, through links or by other names of its folder, or both to
+/// the standard output.
+fn same_target(a: &Path, b: &Path) -> bool {
+    let target = |path: &Path| match path.to_str() {
+        Some("-") => output::target(Path::new("/dev/stdout")),
+        _ => output::target(path),
+    };
+    a == b || target(a) == target(b)
+}
+
 /// Reads a scene file; a word that is neither a file nor a preset is a mistake on the command line.
 fn read(path: &Path) -> Result<Scene, Error> {
     let is_word = path.extension().is_none() && path.components().count() == 1;
@@ -160,6 +172,9 @@ fn read(path: &Path) -> Result<Scene, Error> {
             path.display()
         )));
     }
-    let text = std::fs::read_to_string(path).map_err(|e| Error::io("read", path, e))?;
+    let bytes = std::fs::read(path).map_err(|e| Error::io("read", path, e))?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        Error::data(format!("{} is no scene file: it is not text in UTF-8", path.display()))
+    })?;
     Scene::from_toml(&text, &path.display().to_string())
 }

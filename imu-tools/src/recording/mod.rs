@@ -169,7 +169,9 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     if start.is_empty() {
         return Err(Error::data(format!("{} is empty", path.display())));
     }
-    if start.starts_with(b"#ROSBAG") || path.extension().is_some_and(|e| e == "bag") {
+    if start.starts_with(b"#ROSBAG")
+        || path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bag"))
+    {
         return Ok(Box::new(bag::BagReader::open(input, options)?));
     }
     if start.contains(&0) {
@@ -186,7 +188,8 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
 /// # Errors
 /// When the name has another ending, or the folder cannot be written.
 pub fn create(path: &Path) -> Result<Box<dyn Sink>, Error> {
-    match path.extension().and_then(|e| e.to_str()) {
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    match ending.as_deref() {
         Some("bag") => Ok(Box::new(bag::BagWriter::create(path)?)),
         Some("csv") => Ok(Box::new(csv::CsvWriter::create(path)?)),
         None if path == Path::new("-") => Ok(Box::new(csv::CsvWriter::create(path)?)),

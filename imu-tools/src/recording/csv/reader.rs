@@ -80,7 +80,11 @@ impl CsvReader {
                         headers.push(line);
                     }
                 }
-                None => return Err(Error::data(format!("{path} holds no row of numbers"))),
+                None => {
+                    let old = !start.contains(&b'\n') && start.contains(&b'\r');
+                    let why = if old { ": its lines end in CR alone; end them in LF" } else { "" };
+                    return Err(Error::data(format!("{path} holds no row of numbers{why}")));
+                }
             }
         };
         let separator = Separator::of(first);
@@ -117,6 +121,14 @@ impl CsvReader {
         let time = found.time.unless(options.time_unit);
         let time = time.map_err(|what| unclear(&path, what, "--time-unit"))?;
         let time = time.map_or_else(|| (of_data(), true), |unit| (unit, false));
+        let at_hand = times.get(..whole).unwrap_or_default();
+        if let Some(rate) = time_unit::implausible_rate(at_hand, time.0) {
+            return Err(Error::data(format!(
+                "{path} would have {rate:.2e} samples a second with time in {}: name the unit of \
+                 its time with --time-unit",
+                time.0.symbol()
+            )));
+        }
         let names = |column: fn(u8) -> Column| {
             let at = found.columns.iter().position(|c| *c == column(0));
             at.map_or_else(String::new, |at| format!("columns from {}", at + 1))

@@ -33,6 +33,21 @@ pub fn from_data(times: &[&[u8]]) -> TimeUnit {
     found.unwrap_or(TimeUnit::Seconds)
 }
 
+/// The rate in Hz, where no IMU has one like it: its stamps are in another unit.
+pub fn implausible_rate(times: &[&[u8]], unit: TimeUnit) -> Option<f64> {
+    let times: Vec<i64> =
+        times.iter().filter_map(|time| nanoseconds(time, unit.exponent())).collect();
+    let steps = times.iter().zip(times.iter().skip(1));
+    let mut steps: Vec<f64> = steps.map(|(a, b)| b.saturating_sub(*a) as f64).collect();
+    // Bunches make single steps short, and a clock that is set makes one of them long.
+    let mean = steps.iter().sum::<f64>() / steps.len() as f64;
+    steps.retain(|step| *step > 0.0);
+    steps.sort_unstable_by(f64::total_cmp);
+    let usual = *steps.get(steps.len() / 2)?;
+    let fast = (mean > 0.0 && mean < 1e3).then_some(1e9 / mean);
+    fast.or((usual > 1e13).then_some(1e9 / usual))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -54,6 +69,20 @@ mod tests {
         ] {
             let fields: Vec<&[u8]> = times.iter().map(|t| t.as_bytes()).collect();
             assert_eq!(from_data(&fields), unit, "{times:?}");
+            assert_eq!(implausible_rate(&fields, unit), None, "{times:?}");
         }
+    }
+
+    #[test]
+    fn rates_of_no_imu() {
+        let rate = |times: &[&str], unit| {
+            let fields: Vec<&[u8]> = times.iter().map(|t| t.as_bytes()).collect();
+            implausible_rate(&fields, unit)
+        };
+        assert_eq!(rate(&["10", "20", "30"], TimeUnit::Nanoseconds), Some(1e8));
+        assert_eq!(rate(&["0", "100000", "200000"], TimeUnit::Seconds), Some(1e-5));
+        // A bunch, and a clock that is set by fifty years.
+        assert_eq!(rate(&["0", "0.0000001", "0.01", "0.0100001"], TimeUnit::Seconds), None);
+        assert_eq!(rate(&["0", "0.01", "1600000000", "1600000000.01"], TimeUnit::Seconds), None);
     }
 }
