@@ -49,7 +49,7 @@ pub(super) struct Calibrate {
     /// How to estimate N and K
     #[arg(long, value_enum, default_value_t = EstimatorName::Octaves)]
     estimator: EstimatorName,
-    /// The topic in a bag that has several (imu and /imu are the same)
+    /// The topic in a bag that has several (imu and /imu are the same), or GYRO,ACCEL
     #[arg(long, value_name = "TOPIC")]
     topic: Option<String>,
     /// Use the time at which the bag recorded a message, not the one in its header
@@ -58,7 +58,7 @@ pub(super) struct Calibrate {
     /// Columns of a CSV: t, gx, gy, gz, ax, ay, az and - for one to pass over
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     columns: Option<String>,
-    /// Unit of angular rate: rad/s, deg/s, ...
+    /// Unit of angular rate: rad/s, mrad/s, deg/s, mdeg/s, deg/h
     #[arg(long, value_name = "UNIT")]
     gyro_unit: Option<RateUnit>,
     /// Unit of specific force: m/s^2, g, mg
@@ -71,7 +71,7 @@ pub(super) struct Calibrate {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum EstimatorName {
-    /// Likelihood of the octaves of τ (the default)
+    /// Likelihood of the octaves of τ
     Octaves,
     /// Exact maximum likelihood on block means
     Ml,

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use imu_core::allan::Parameter;
 
 use super::Quantity;
+use super::table::short;
 use crate::calibrate::{Calibration, SensorKind, SensorNoise};
 
 /// The file, all axes of a sensor pooled. A parameter that the record cannot show has its upper
@@ -58,8 +59,8 @@ fn lines(text: &mut String, kind: SensorKind, sensor: &SensorNoise) {
                 format!("{name}_{key}: {value:.6e}  # {unit}, a reading without an interval")
             }
             Parameter::Observable { value, low90, high90, .. } => format!(
-                "{name}_{key}: {value:.6e}  # {unit}, {low90:.3e} to {high90:.3e}; {:.4} {}",
-                value * twin.per_si,
+                "{name}_{key}: {value:.6e}  # {unit}, {low90:.3e} to {high90:.3e}; {} {}",
+                short(value * twin.per_si),
                 twin.unit
             ),
             Parameter::NotObservable { upper90, record_at_least_s } if upper90.is_finite() => {
