@@ -1,5 +1,5 @@
-//! `imu_core::allan::Ladder`: every operation and its byte form, in both scalars, orders and numbers of windows; what
-//! a sample costs.
+//! `imu_core::allan::Ladder`: every operation and its byte form, in both scalars, orders and numbers
+//! of windows; what a sample costs.
 
 use crate::Report;
 use crate::inputs::Integers;
@@ -108,12 +108,12 @@ pub fn cost<T: Real, const WINDOWS: usize, const ORDER: usize>(report: &mut dyn 
     let samples: [[T; 6]; 64] = samples(&mut Integers::new(5));
     let mut ladder = Large::<T, WINDOWS, ORDER>::new();
     report.state("ladder", size_of_val(&ladder));
-    for sample in samples.iter().take(14) {
+    for sample in samples.iter().take(6) {
         ladder.push(sample);
     }
     // One call alone: within a tick, which is 40 or 62.5 instructions.
-    report.instructions("the push that ends learning", 1, &mut || ladder.push(&samples[14]));
-    for sample in samples.iter().skip(15) {
+    report.instructions("the push that ends learning", 1, &mut || ladder.push(&samples[6]));
+    for sample in samples.iter().skip(7) {
         ladder.push(sample);
     }
     report.instructions("push", 4096, &mut || {

@@ -11,6 +11,7 @@ use core::hint::black_box;
 use imu_core::Real;
 
 mod edf;
+mod fit;
 pub mod inputs;
 mod ladder;
 mod noise;
@@ -79,6 +80,8 @@ pub const CASES: &[Case] = &[
     Case { name: "Allan f64 4 cost", run: ladder::cost::<f64, 4, 1> },
     Case { name: "Hadamard f64 1 cost", run: ladder::cost::<f64, 1, 2> },
     Case { name: "Hadamard f64 4 cost", run: ladder::cost::<f64, 4, 2> },
+    Case { name: "fit", run: fit::bits },
+    Case { name: "fit cost", run: fit::cost },
     Case { name: "Allan f32 1 worst", run: ladder::worst_push },
 ];
 

@@ -1,6 +1,7 @@
 //! The functions of images that hold one thing each, for the flash that it takes with all it needs.
 
 use core::hint::black_box;
+use imu_core::allan::{Difference, Octave, Sampling, fit_noise};
 use imu_core::noise::{Axis, Channel, Sensor, Stage, Term, White};
 
 /// White noise, not composed.
@@ -20,4 +21,12 @@ fn hundred_steps(terms: impl Term<f32>) {
             black_box(stage.step(black_box(1.0)));
         }
     }
+}
+
+/// The fit of N and K to 22 octaves.
+pub fn fit_only() {
+    let octave = Octave { samples: 1, differences: 1000, variance: 1.0, white_gain: 1.0 };
+    let sampling =
+        Sampling { tau0_s: 0.005, difference: Difference::Allan, windows: 4, records: 1 };
+    black_box(fit_noise(black_box(&[octave; 22]), black_box(sampling)));
 }

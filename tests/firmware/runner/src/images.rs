@@ -43,7 +43,7 @@ pub const TARGETS: [Target; 2] = [
 ];
 
 /// Images of one function each, for the flash that it takes with all it needs.
-pub const SINGLE: &[&str] = &["white_alone", "white_composed"];
+pub const SINGLE: &[&str] = &["white_alone", "white_composed", "fit_only"];
 
 /// The images of one target.
 pub struct Built(PathBuf);
