@@ -100,6 +100,8 @@ fn mistakes_are_one_sentence_and_leave_no_file() {
     let bag = at(&folder, "a.bag");
     let scene = at(&folder, "scene.toml");
     fs::write(&scene, "seed = 1\nsede = 2\n").expect("written");
+    let latin = at(&folder, "latin.toml");
+    fs::write(&latin, b"# \xe9\n").expect("written");
     let absent = at(&folder, "absent.toml");
     let nowhere = at(&folder, "nowhere/a.bag");
     let here = folder.path().to_str().expect("UTF-8");
@@ -113,6 +115,10 @@ fn mistakes_are_one_sentence_and_leave_no_file() {
         (&["mid", "-o", &bag, "--duration", "soon"], 2, "'soon' cannot be read"),
         (&["mid", "-o", &bag, "--lowpass", "-1"], 2, "a low-pass at -1 Hz"),
         (&["mid", "-o", &bag, "--truth", &bag], 2, "cannot both go to"),
+        (&["mid", "-o", &bag, "--truth", &at(&folder, "./a.bag")], 2, "cannot both go to"),
+        (&["mid", "-o", "-", "--truth", "/dev/stdout"], 2, "cannot both go to"),
+        (&["mid", "-o", &bag, "--seed", "-1"], 2, "'-1'"),
+        (&[&latin, "-o", &bag], 1, "latin.toml is no scene file: it is not text in UTF-8"),
         (&["mid", "-o", &at(&folder, "a.mcap")], 2, "a.mcap"),
         (&["mid", "-o", &nowhere], 1, "no such file or folder"),
         (&[&absent, "-o", &bag], 1, "cannot read"),
@@ -125,7 +131,7 @@ fn mistakes_are_one_sentence_and_leave_no_file() {
         assert_eq!(said.err.lines().count(), 1, "{}", said.err);
         assert_eq!(said.out, "");
         let left = fs::read_dir(folder.path()).expect("the folder").count();
-        assert_eq!(left, 1, "only the scene file: {arguments:?}");
+        assert_eq!(left, 2, "only the scene files: {arguments:?}");
     }
 }
 
@@ -139,6 +145,22 @@ fn a_reader_that_leaves_ends_the_program_quietly() {
     let output = child.wait_with_output().expect("it ends");
     assert!(output.status.success(), "{:?}", output.status);
     assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn nobody_to_tell_is_no_panic() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let csv = at(&folder, "a.csv");
+    for (arguments, code) in [
+        (&["simulate", "low", "--duration", "1s", "-o", &csv][..], 0),
+        (&["calibrate", &at(&folder, "absent.csv")], 1),
+        (&["nonsense"], 2),
+    ] {
+        let full = fs::File::options().write(true).open("/dev/full").expect("opened");
+        let status = imu().args(arguments).stderr(full).status().expect("started");
+        assert_eq!(status.code(), Some(code), "{arguments:?}");
+    }
 }
 
 #[test]
