@@ -34,6 +34,6 @@ pub struct Sampling {
     /// Windows per τ of the ladder: 1 or 4.
     pub windows: u8,
     /// How many independent records of the same noise are averaged in the octaves
-    /// ([`average_octaves`]); 1 for a single axis.
+    /// ([`average_octaves`](super::average_octaves)); 1 for a single axis.
     pub records: u32,
 }
