@@ -104,7 +104,7 @@ fn losses_are_counted_and_cost_their_share() {
             let calibration = json(&[&folder.record(name, &block)]);
             assert_truth(&calibration);
             for sensor in ["gyroscope", "accelerometer"] {
-                let words = format!("{missing} samples are missing in ");
+                let words = format!("samples missing: {missing},");
                 assert!(warns(&calibration, sensor, &words), "{}", calibration["recording"]);
                 assert_eq!(calibration[sensor]["samples"], block.gyroscope.len());
                 // As long a τ as without losses.

@@ -195,6 +195,13 @@ pub fn calibrate(
         return Err(too_few(path, most, options));
     }
     for sensor in [&gyroscope, &accelerometer].into_iter().flatten() {
+        if sensor.stamps.rate_hz <= 0.0 && sensor.stamps.samples > 1 {
+            return Err(Error::data(format!(
+                "{path}: the stamps of the {} never increase, so it has no rate: name the right column \
+                 of time with --columns, or try --bag-time for a bag",
+                sensor.kind.name()
+            )));
+        }
         if sensor.rejected * 10 > sensor.stamps.samples {
             return Err(Error::data(format!(
                 "{path}: {} of {} samples of the {} are not finite or far beyond what its first ones \

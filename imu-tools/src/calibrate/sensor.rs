@@ -295,19 +295,28 @@ impl SensorNoise {
                  digits"
             ));
         }
-        let Summary { gap_count, missing, duplicates, backward, restarts, .. } = self.stamps;
+        let Summary { samples, gap_count, missing, duplicates, backward, restarts, .. } =
+            self.stamps;
         if gap_count > 0 {
-            warnings.push(format!("{name}: {missing} samples are missing in {gap_count} gaps"));
+            warnings.push(format!("{name}: samples missing: {missing}, gaps: {gap_count}"));
         }
-        if duplicates > 0 {
-            warnings.push(format!("{name}: {duplicates} stamps are the same as the one before"));
+        if duplicates > samples / 2 {
+            warnings.push(format!(
+                "{name}: most stamps are the same as the one before: they are too coarse, and the \
+                 rate (and with it N and K) may be wrong"
+            ));
+        } else if duplicates > 0 {
+            warnings
+                .push(format!("{name}: stamps that are the same as the one before: {duplicates}"));
         }
         if backward > 0 {
-            warnings.push(format!("{name}: {backward} stamps are earlier than the one before"));
+            warnings
+                .push(format!("{name}: stamps that are earlier than the one before: {backward}"));
         }
         if restarts > 0 {
-            warnings
-                .push(format!("{name}: the clock was set back, or stood still, {restarts} times"));
+            warnings.push(format!(
+                "{name}: times that the clock was set back or stood still: {restarts}"
+            ));
         }
         if let Parameter::NotObservable { upper90, record_at_least_s } = self.pooled.random_walk
             && upper90.is_finite()

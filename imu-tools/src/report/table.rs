@@ -25,7 +25,7 @@ fn sensor(text: &mut String, sensor: &SensorNoise) {
     let stamps = &sensor.stamps;
     let gaps = match stamps.gap_count {
         0 => "no gaps".to_owned(),
-        n => format!("{n} gaps ({} samples missing)", stamps.missing),
+        n => format!("gaps: {n} (samples missing: {})", stamps.missing),
     };
     let _ = writeln!(
         text,
