@@ -6,8 +6,8 @@
 //! that were there, and a hole is blocks with none: time goes on in it.
 //!
 //! A sample that is not finite, or further from the median of the first 15 than 4096 times their
-//! median absolute deviation on some axis, counts as missing, as it does in an
-//! [`AllanLadder`](imu_core::allan::AllanLadder).
+//! median absolute deviation, counts as missing: the rule of an
+//! [`AllanLadder`](imu_core::allan::AllanLadder), from more samples.
 //!
 //! ```
 //! use imu_tools::calibrate::block_means::BlockMeans;
