@@ -14,7 +14,11 @@ fn blocks() -> Vec<Block> {
         value: [i as f64, 0.1, 9.81],
     };
     let samples: Vec<Sample> = (0..72_000).map(sample).collect();
-    let block = |s: &[Sample]| Block { gyroscope: s.to_vec(), accelerometer: s.to_vec() };
+    let block = |s: &[Sample]| Block {
+        gyroscope: s.to_vec(),
+        accelerometer: s.to_vec(),
+        ..Block::default()
+    };
     samples.chunks(4096).map(block).collect()
 }
 

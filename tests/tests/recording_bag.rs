@@ -107,7 +107,11 @@ fn the_same_samples_give_the_same_bytes() {
     let pieces: Vec<Block> = (0..5000)
         .map(|i| {
             let all = block(5000);
-            Block { gyroscope: vec![all.gyroscope[i]], accelerometer: vec![all.accelerometer[i]] }
+            Block {
+                gyroscope: vec![all.gyroscope[i]],
+                accelerometer: vec![all.accelerometer[i]],
+                ..Block::default()
+            }
         })
         .take(50)
         .collect();
@@ -261,7 +265,7 @@ fn stamps_that_a_bag_cannot_hold_are_refused_and_leave_nothing() {
         let (folder, path) = folder();
         let mut sink = recording::create(&path).unwrap();
         let gyroscope = vec![Sample { stamp_ns, value: [0.0; 3] }];
-        let error = sink.write_block(&Block { gyroscope, accelerometer: vec![] }).unwrap_err();
+        let error = sink.write_block(&Block { gyroscope, ..Block::default() }).unwrap_err();
         assert!(error.to_string().contains("1970 to 2106"), "{error}");
         drop(sink);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);

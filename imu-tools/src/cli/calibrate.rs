@@ -133,6 +133,7 @@ impl Calibrate {
     fn read_options(&self) -> ReadOptions {
         ReadOptions {
             topic: self.topic.clone(),
+            survey: false,
             bag_time: self.bag_time,
             columns: self.columns.clone(),
             gyro_unit: self.gyro_unit,

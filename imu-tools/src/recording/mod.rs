@@ -31,6 +31,7 @@ pub mod bag;
 pub mod csv;
 mod input;
 pub mod timeline;
+mod topics;
 mod units;
 
 use std::io::Read;
@@ -59,13 +60,25 @@ pub struct Block {
     pub gyroscope: Vec<Sample>,
     /// Specific force, m/s².
     pub accelerometer: Vec<Sample>,
+    /// What a thermometer in or near the sensor said, where there is one.
+    pub temperature: Vec<Temperature>,
+}
+
+/// One reading of a thermometer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Temperature {
+    /// Nanoseconds since the epoch of the recording's clock.
+    pub stamp_ns: i64,
+    /// Degrees Celsius.
+    pub celsius: f64,
 }
 
 impl Block {
-    /// Empties both lists and keeps their memory.
+    /// Empties all lists and keeps their memory.
     pub fn clear(&mut self) {
         self.gyroscope.clear();
         self.accelerometer.clear();
+        self.temperature.clear();
     }
 }
 
@@ -81,6 +94,19 @@ pub enum Note {
     Warning(String),
 }
 
+/// A topic, a message of a log, or the columns of a table, whether it is an IMU's or not.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stream {
+    /// As the recording calls it.
+    pub name: String,
+    /// What its messages are, as the recording calls it.
+    pub type_name: String,
+    /// Messages or rows so far.
+    pub messages: u64,
+    /// Samples are taken from it.
+    pub used: bool,
+}
+
 /// A recording being read, front to back, once.
 pub trait Source: Send {
     /// Clears `block` and fills it with the next samples, at most [`BLOCK_SAMPLES`] a sensor;
@@ -89,6 +115,9 @@ pub trait Source: Send {
     /// # Errors
     /// When the file cannot be read or is not what it was taken for.
     fn next_block(&mut self, block: &mut Block) -> Result<bool, Error>;
+
+    /// What the recording holds, as far as is known by now; complete once the end was reached.
+    fn streams(&self) -> Vec<Stream>;
 
     /// Where the gyroscope's samples come from: a topic, or the names of columns.
     fn gyroscope(&self) -> &str;
@@ -127,6 +156,9 @@ pub trait Sink: Send {
 pub struct ReadOptions {
     /// The Imu topic of a bag; `imu` and `/imu` are the same. `None` takes the only one.
     pub topic: Option<String>,
+    /// Where there are several IMUs, take the first and say so, in the place of an error: for those
+    /// who want to know what a recording holds.
+    pub survey: bool,
     /// Stamp samples with the time at which the bag recorded them, not with their header's.
     pub bag_time: bool,
     /// Columns of a CSV, such as `t,gx,gy,gz,ax,ay,az,-`. `None` finds them.

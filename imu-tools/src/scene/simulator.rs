@@ -15,7 +15,7 @@ use super::clock::Ticks;
 use super::low_pass::LowPass;
 use super::{Path, Scene, SensorErrors};
 use crate::error::Error;
-use crate::recording::{BLOCK_SAMPLES, Block, Note, Sample, Source};
+use crate::recording::{BLOCK_SAMPLES, Block, Note, Sample, Source, Stream};
 
 /// What was true at each sample of a block.
 #[derive(Clone, Debug, Default)]
@@ -211,6 +211,10 @@ fn present<P: Term<f64>>(
 impl Source for Simulator {
     fn next_block(&mut self, block: &mut Block) -> Result<bool, Error> {
         Ok(self.advance(block))
+    }
+
+    fn streams(&self) -> Vec<Stream> {
+        Vec::new()
     }
 
     fn gyroscope(&self) -> &str {

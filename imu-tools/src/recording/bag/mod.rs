@@ -12,7 +12,6 @@ mod imu_message;
 mod reader;
 mod record;
 mod repeat;
-mod topics;
 mod writer;
 
 pub use reader::BagReader;

@@ -1,15 +1,15 @@
 //! Reading a bag front to back, in a file or a pipe.
 
 use super::MAGIC;
-use super::imu_message::{ImuMessage, TYPE_NAME};
+use super::imu_message::{ImuMessage, MD5SUM, TYPE_NAME};
 use super::op;
 use super::record::{Header, prefixed};
 use super::repeat::Repeat;
-use super::topics::{Role, Topics};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
+use crate::recording::topics::{Connection, Holds, Role, Topics};
 use crate::recording::{
-    BLOCK_SAMPLES, Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Source,
+    BLOCK_SAMPLES, Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Source, Stream,
 };
 
 /// A bag being read.
@@ -175,6 +175,7 @@ impl BagReader {
         }
         match (op, conn) {
             (op::MESSAGE, Some(conn)) => {
+                self.topics.count(conn);
                 if let Some(role) = self.topics.role(conn) {
                     if len > LARGEST_PIECE as u64 {
                         self.taken.malformed += 1;
@@ -225,6 +226,7 @@ impl BagReader {
             && let Some((time, payload)) = repeat.next(bytes)
         {
             self.taken.message(payload, time, self.bag_time, repeat.role, block);
+            self.topics.count(repeat.role.number);
             used += repeat.len;
             bytes = bytes.get(repeat.len..).unwrap_or_default();
         }
@@ -255,7 +257,18 @@ impl BagReader {
         let fields = bytes.get(4..4 + header).and_then(Header::parse);
         let described = bytes.get(8 + header..8 + header + data).and_then(Header::parse);
         if let (Some(fields), Some(described)) = (fields, described) {
-            self.topics.add(conn, &fields, &described);
+            let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+            let (Some(topic), Some(type_name)) =
+                (fields.topic.or(described.topic), described.type_name)
+            else {
+                return Ok(());
+            };
+            self.topics.add(Connection {
+                number: conn,
+                topic: text(topic),
+                type_name: text(type_name),
+                holds: holds(type_name, described.md5sum.unwrap_or_default()),
+            });
         }
         Ok(())
     }
@@ -328,6 +341,20 @@ impl BagReader {
         if messages > 1 && unstamped == messages && !self.bag_time {
             self.warn("has no stamps in its messages: read it with --bag-time".into());
         }
+    }
+}
+
+/// What the messages of a type are to us: its name and fingerprint must be the ones that we know.
+fn holds(type_name: &[u8], md5sum: &[u8]) -> Holds {
+    if type_name != TYPE_NAME.as_bytes() {
+        Holds::Other
+    } else if [MD5SUM.as_bytes(), b"*", b""].contains(&md5sum) {
+        Holds::Imu
+    } else {
+        Holds::Unreadable(format!(
+            "holds an unknown layout of {TYPE_NAME} (md5sum {}, where {MD5SUM} is expected)",
+            String::from_utf8_lossy(md5sum)
+        ))
     }
 }
 
@@ -407,6 +434,10 @@ impl Source for BagReader {
         scale(&mut block.gyroscope, self.rate);
         scale(&mut block.accelerometer, self.force);
         Ok(!block.gyroscope.is_empty() || !block.accelerometer.is_empty())
+    }
+
+    fn streams(&self) -> Vec<Stream> {
+        self.topics.streams()
     }
 
     fn gyroscope(&self) -> &str {

@@ -5,7 +5,7 @@
 //! each header anew.
 
 use super::record::prefixed;
-use super::topics::Role;
+use crate::recording::topics::Role;
 
 /// Headers are 38 bytes long, and a little more where a recorder adds fields.
 const LONGEST: usize = 96;
@@ -60,17 +60,13 @@ impl Repeat {
 #[cfg(test)]
 mod tests {
     use super::super::record::{push_header, push_prefixed};
-    use super::super::topics::Topics;
     use super::*;
+    use crate::recording::topics::{Connection, Holds, Topics};
 
     fn role() -> Role {
         let mut topics = Topics::new(None);
-        let connection = |bytes| super::super::record::Header::parse(bytes).unwrap();
-        topics.add(
-            0,
-            &connection(b"\x0a\0\0\0topic=/imu"),
-            &connection(b"\x14\0\0\0type=sensor_msgs/Imu"),
-        );
+        let (topic, type_name) = ("/imu".into(), "sensor_msgs/Imu".into());
+        topics.add(Connection { number: 0, topic, type_name, holds: Holds::Imu });
         topics.choose("a.bag".as_ref()).unwrap();
         topics.role(0).unwrap()
     }

@@ -5,7 +5,7 @@ use super::{number, time_unit};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
 use crate::recording::{
-    BLOCK_SAMPLES, Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Source, TimeUnit,
+    BLOCK_SAMPLES, Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Source, Stream, TimeUnit,
 };
 
 /// So much of the start is looked at to understand the table.
@@ -23,6 +23,8 @@ pub struct CsvReader {
     force: f64,
     /// Lines taken so far.
     line: u64,
+    /// Of them, those that can be read.
+    rows: u64,
     gyroscope: String,
     accelerometer: String,
     notes: Vec<Note>,
@@ -139,6 +141,7 @@ impl CsvReader {
             rate: 1.0,
             force: 1.0,
             line: aside,
+            rows: 0,
             gyroscope: names(Column::Rate),
             accelerometer: names(Column::Force),
             notes: Vec::new(),
@@ -327,12 +330,18 @@ impl Source for CsvReader {
         while block.gyroscope.len() < BLOCK_SAMPLES && block.accelerometer.len() < BLOCK_SAMPLES {
             let Some(len) = self.next_line()? else { break };
             self.line += 1;
-            if let Err(fault) = self.row(len, block) {
-                self.faulty(len, fault)?;
+            match self.row(len, block) {
+                Ok(()) => self.rows += 1,
+                Err(fault) => self.faulty(len, fault)?,
             }
             self.input.consume(len);
         }
         Ok(!block.gyroscope.is_empty() || !block.accelerometer.is_empty())
+    }
+
+    fn streams(&self) -> Vec<Stream> {
+        let name = format!("{} columns", self.columns.len());
+        vec![Stream { name, type_name: "table".into(), messages: self.rows, used: true }]
     }
 
     fn gyroscope(&self) -> &str {

@@ -2,29 +2,44 @@
 
 use std::path::Path;
 
-use super::imu_message::{MD5SUM, TYPE_NAME};
-use super::record::Header;
+use super::Stream;
 use crate::error::Error;
 
 /// Topics listed in an error, at most.
 const LISTED: usize = 40;
 
-/// Connections remembered, at most: a bag has a few dozen.
+/// Connections remembered, at most: a recording has a few dozen.
 const CONNECTIONS: usize = 4096;
 
-/// A publisher of a topic, as the bag describes it.
+/// What the messages of a connection are to us.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Connection {
-    number: u32,
-    topic: String,
-    type_name: String,
-    md5sum: String,
+pub enum Holds {
+    /// Readings of an IMU in a layout that we know.
+    Imu,
+    /// Readings of an IMU that cannot be read, and why: a whole sentence without its end.
+    Unreadable(String),
+    /// Something else.
+    Other,
+}
+
+/// A publisher of a topic, as the recording describes it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Connection {
+    /// By which the recording calls it.
+    pub number: u32,
+    /// As the recording writes it.
+    pub topic: String,
+    /// Name of its messages' type.
+    pub type_name: String,
+    /// What they hold.
+    pub holds: Holds,
 }
 
 /// Which sensors are taken from a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Role {
-    number: u32,
+    /// Of the connection.
+    pub number: u32,
     /// Its angular rates are wanted.
     pub gyroscope: bool,
     /// Its specific forces are wanted.
@@ -37,8 +52,10 @@ pub struct Topics {
     /// Topics of gyroscope and accelerometer.
     asked: Option<(String, String)>,
     connections: Vec<Connection>,
+    /// Messages seen of each.
+    messages: Vec<u64>,
     roles: Vec<Role>,
-    /// Topics that were found, as the bag writes them.
+    /// Topics that were found, as the recording writes them.
     pub gyroscope: String,
     /// As above.
     pub accelerometer: String,
@@ -59,6 +76,7 @@ impl Topics {
         Self {
             asked,
             connections: Vec::new(),
+            messages: Vec::new(),
             roles: Vec::new(),
             gyroscope: String::new(),
             accelerometer: String::new(),
@@ -86,21 +104,41 @@ impl Topics {
         !self.roles.is_empty()
     }
 
-    /// Takes note of connection `number`, described by `header` and `data`; without a topic or a
-    /// type it is ignored.
-    pub fn add(&mut self, number: u32, header: &Header<'_>, data: &Header<'_>) {
-        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-        let Some(topic) = header.topic.or(data.topic) else { return };
-        let Some(type_name) = data.type_name else { return };
-        if self.knows(number) || self.connections.len() >= CONNECTIONS {
+    /// Takes note of a connection, once.
+    pub fn add(&mut self, connection: Connection) {
+        if self.knows(connection.number) || self.connections.len() >= CONNECTIONS {
             return;
         }
-        self.connections.push(Connection {
-            number,
-            topic: text(topic),
-            type_name: text(type_name),
-            md5sum: text(data.md5sum.unwrap_or_default()),
-        });
+        self.connections.push(connection);
+        self.messages.push(0);
+    }
+
+    /// Counts a message of a connection.
+    pub fn count(&mut self, number: u32) {
+        let place = self.connections.iter().position(|c| c.number == number);
+        if let Some(count) = place.and_then(|place| self.messages.get_mut(place)) {
+            *count += 1;
+        }
+    }
+
+    /// All topics, those of one name and type as one.
+    pub fn streams(&self) -> Vec<Stream> {
+        let mut streams: Vec<Stream> = Vec::new();
+        for (connection, &messages) in self.connections.iter().zip(&self.messages) {
+            let same =
+                |s: &&mut Stream| s.name == connection.topic && s.type_name == connection.type_name;
+            if let Some(stream) = streams.iter_mut().find(same) {
+                stream.messages += messages;
+            } else {
+                streams.push(Stream {
+                    name: connection.topic.clone(),
+                    type_name: connection.type_name.clone(),
+                    messages,
+                    used: self.role(connection.number).is_some(),
+                });
+            }
+        }
+        streams
     }
 
     /// Decides who plays which role, of all connections known by now.
@@ -111,14 +149,14 @@ impl Topics {
         let (gyroscope, accelerometer) = match &self.asked {
             Some(asked) => asked.clone(),
             None => {
-                let mut imus = self.connections.iter().filter(|c| c.type_name == TYPE_NAME);
+                let mut imus = self.connections.iter().filter(|c| c.holds != Holds::Other);
                 let Some(first) = imus.next() else { return Ok(()) };
                 if imus.any(|other| !same(&other.topic, &first.topic)) {
                     return Err(Error::usage(format!(
                         "{} has several Imu topics: {}; choose one with --topic TOPIC, or \
                          --topic GYROSCOPE,ACCELEROMETER where each sensor has its own",
                         path.display(),
-                        self.list(|c| c.type_name == TYPE_NAME),
+                        self.list(|c| c.holds != Holds::Other),
                     )));
                 }
                 (first.topic.clone(), first.topic.clone())
@@ -155,7 +193,9 @@ impl Topics {
         }
         let all = self.list(|_| true);
         match &self.asked {
-            None => Error::data(format!("{path} has no topic of type {TYPE_NAME}; it has {all}")),
+            None => Error::data(format!(
+                "{path} has no topic of an IMU (type sensor_msgs/Imu); it has {all}"
+            )),
             Some((gyroscope, accelerometer)) => {
                 let found = |topic: &str| self.connections.iter().any(|c| same(&c.topic, topic));
                 let topic = if found(gyroscope) { accelerometer } else { gyroscope };
@@ -187,18 +227,13 @@ impl Topics {
 
 /// A chosen topic must hold the message that we know.
 fn check(connection: &Connection, path: &Path) -> Result<(), Error> {
-    let Connection { topic, type_name, md5sum, .. } = connection;
+    let Connection { topic, type_name, .. } = connection;
     let path = path.display();
-    if type_name != TYPE_NAME {
-        return Err(Error::usage(format!(
-            "topic {topic} of {path} holds {type_name}, not {TYPE_NAME}: choose another one"
-        )));
+    match &connection.holds {
+        Holds::Imu => Ok(()),
+        Holds::Unreadable(why) => Err(Error::data(format!("topic {topic} of {path} {why}"))),
+        Holds::Other => Err(Error::usage(format!(
+            "topic {topic} of {path} holds {type_name}, not sensor_msgs/Imu: choose another one"
+        ))),
     }
-    if md5sum != MD5SUM && md5sum != "*" && !md5sum.is_empty() {
-        return Err(Error::data(format!(
-            "topic {topic} of {path} holds an unknown layout of {TYPE_NAME} (md5sum {md5sum}, \
-             where {MD5SUM} is expected)"
-        )));
-    }
-    Ok(())
 }
