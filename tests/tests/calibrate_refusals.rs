@@ -46,7 +46,10 @@ fn files_that_are_no_recordings() {
         (folder.put("text.csv", "Dear diary,\nno table.\n"), &["text.csv holds no row of numbers"]),
         (
             folder.put("no_imu.bag", no_imu),
-            &["no_imu.bag has no topic of an IMU (type sensor_msgs/Imu)", "/odom (nav_msgs/Odometry)"],
+            &[
+                "no_imu.bag has no topic of an IMU (type sensor_msgs/Imu)",
+                "/odom (nav_msgs/Odometry)",
+            ],
         ),
     ] {
         assert_refused(&calibrate(&[&path]), 1, words);

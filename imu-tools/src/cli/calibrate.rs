@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::progress;
+use super::reading::Reading;
 use crate::calibrate::{Calibration, Estimator, Options, calibrate};
 use crate::error::Error;
 use crate::output::Output;
-use crate::recording::{self, ForceUnit, RateUnit, ReadOptions, TimeUnit};
+use crate::recording;
 use crate::report;
 
 const EXAMPLES: &str = "\
@@ -49,24 +50,8 @@ pub(super) struct Calibrate {
     /// How to estimate N and K
     #[arg(long, value_enum, default_value_t = EstimatorName::Octaves)]
     estimator: EstimatorName,
-    /// The topic in a bag that has several (imu and /imu are the same), or GYRO,ACCEL
-    #[arg(long, value_name = "TOPIC")]
-    topic: Option<String>,
-    /// Use the time at which the bag recorded a message, not the one in its header
-    #[arg(long)]
-    bag_time: bool,
-    /// Columns of a CSV: t, gx, gy, gz, ax, ay, az and - for one to pass over
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    columns: Option<String>,
-    /// Unit of angular rate: rad/s, mrad/s, deg/s, mdeg/s, deg/h
-    #[arg(long, value_name = "UNIT")]
-    gyro_unit: Option<RateUnit>,
-    /// Unit of specific force: m/s^2, g, mg
-    #[arg(long, value_name = "UNIT")]
-    accel_unit: Option<ForceUnit>,
-    /// Unit of time in a CSV: s, ms, us, ns
-    #[arg(long, value_name = "UNIT")]
-    time_unit: Option<TimeUnit>,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -82,7 +67,7 @@ enum EstimatorName {
 impl Calibrate {
     pub(super) fn run(self) -> Result<(), Error> {
         let options = self.options()?;
-        let source = recording::open(&self.file, &self.read_options())?;
+        let source = recording::open(&self.file, &self.reading.options())?;
         let bar = progress::bytes(source.bytes_total(), "reading");
         let name = match self.file.to_str() {
             Some("-") => "the pipe".to_owned(),
@@ -121,25 +106,13 @@ impl Calibrate {
         Ok(Options {
             from_s: self.from,
             to_s: self.to,
-            unit_is_given: self.accel_unit.is_some(),
+            unit_is_given: self.reading.accel_unit_is_given(),
             estimator: match self.estimator {
                 EstimatorName::Octaves => Estimator::Octaves,
                 EstimatorName::Ml => Estimator::MaximumLikelihood,
                 EstimatorName::Slope => Estimator::Slope,
             },
         })
-    }
-
-    fn read_options(&self) -> ReadOptions {
-        ReadOptions {
-            topic: self.topic.clone(),
-            survey: false,
-            bag_time: self.bag_time,
-            columns: self.columns.clone(),
-            gyro_unit: self.gyro_unit,
-            accel_unit: self.accel_unit,
-            time_unit: self.time_unit,
-        }
     }
 }
 

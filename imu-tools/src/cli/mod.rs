@@ -7,6 +7,7 @@
 mod calibrate;
 mod demo;
 mod progress;
+mod reading;
 mod simulate;
 
 use std::ffi::OsString;
