@@ -185,26 +185,26 @@ fn topics_are_found_listed_and_asked_for() {
     let imu = "sensor_msgs/Imu";
     let two = bag(&[chunk(&[
         connection(0, "/camera", "sensor_msgs/Image"),
-        connection(1, "/gyro", imu),
+        connection(1, "/left", imu),
         message(1, 5, 0),
-        connection(2, "/accel", imu),
+        connection(2, "/right", imu),
         message(2, 6, 0),
         message(1, 7, 0),
     ])]);
     let topic = |topic: &str| ReadOptions { topic: Some(topic.into()), ..ReadOptions::default() };
     let error = read_bytes(&two, &ReadOptions::default()).unwrap_err();
     assert_eq!(error.exit_code(), 2);
-    for part in ["/gyro", "/accel", "--topic"] {
+    for part in ["/left", "/right", "--topic"] {
         assert!(error.to_string().contains(part), "{error}");
     }
-    assert_eq!(read_bytes(&two, &topic("gyro")).unwrap().0.gyroscope.len(), 2);
-    let (both, _) = read_bytes(&two, &topic("/gyro,/accel")).unwrap();
+    assert_eq!(read_bytes(&two, &topic("left")).unwrap().0.gyroscope.len(), 2);
+    let (both, _) = read_bytes(&two, &topic("/left,/right")).unwrap();
     assert_eq!((both.gyroscope.len(), both.accelerometer.len()), (2, 1));
     assert_eq!(both.accelerometer[0].stamp_ns, 6_000_000_000);
 
     let error = read_bytes(&two, &topic("/imu")).unwrap_err();
     assert_eq!(error.exit_code(), 2);
-    for part in ["no topic /imu", "/camera (sensor_msgs/Image)", "/gyro (sensor_msgs/Imu)"] {
+    for part in ["no topic /imu", "/camera (sensor_msgs/Image)", "/left (sensor_msgs/Imu)"] {
         assert!(error.to_string().contains(part), "{error}");
     }
     let error = read_bytes(&two, &topic("/camera")).unwrap_err();

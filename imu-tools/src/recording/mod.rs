@@ -119,7 +119,8 @@ pub trait Source: Send {
     /// What the recording holds, as far as is known by now; complete once the end was reached.
     fn streams(&self) -> Vec<Stream>;
 
-    /// Where the gyroscope's samples come from: a topic, or the names of columns.
+    /// Where the gyroscope's samples come from: a topic, or the names of columns; empty where there
+    /// are none.
     fn gyroscope(&self) -> &str;
 
     /// Where the accelerometer's samples come from.
@@ -154,7 +155,8 @@ pub trait Sink: Send {
 /// How to read a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
-    /// The Imu topic of a bag; `imu` and `/imu` are the same. `None` takes the only one.
+    /// The Imu topic of a bag, or two joined by a comma, gyroscope's and accelerometer's; `imu` and
+    /// `/imu` are the same. `None` takes the only one, or the pair that is named so.
     pub topic: Option<String>,
     /// Where there are several IMUs, take the first and say so, in the place of an error: for those
     /// who want to know what a recording holds.

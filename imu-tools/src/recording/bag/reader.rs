@@ -68,7 +68,7 @@ impl BagReader {
         input.consume(MAGIC.len());
         let mut bag = Self {
             input,
-            topics: Topics::new(options.topic.as_deref()),
+            topics: Topics::new(options),
             bag_time: options.bag_time,
             rate: options.gyro_unit.map_or(1.0, RateUnit::to_rad_s),
             force: options.accel_unit.map_or(1.0, ForceUnit::to_m_s2),
@@ -449,7 +449,9 @@ impl Source for BagReader {
     }
 
     fn take_notes(&mut self) -> Vec<Note> {
-        std::mem::take(&mut self.notes)
+        let mut notes = std::mem::take(&mut self.notes);
+        notes.append(&mut self.topics.take_notes());
+        notes
     }
 
     fn bytes_read(&self) -> u64 {

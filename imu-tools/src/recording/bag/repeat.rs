@@ -61,10 +61,11 @@ impl Repeat {
 mod tests {
     use super::super::record::{push_header, push_prefixed};
     use super::*;
+    use crate::recording::ReadOptions;
     use crate::recording::topics::{Connection, Holds, Topics};
 
     fn role() -> Role {
-        let mut topics = Topics::new(None);
+        let mut topics = Topics::new(&ReadOptions::default());
         let (topic, type_name) = ("/imu".into(), "sensor_msgs/Imu".into());
         topics.add(Connection { number: 0, topic, type_name, holds: Holds::Imu });
         topics.choose("a.bag".as_ref()).unwrap();

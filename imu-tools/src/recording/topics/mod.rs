@@ -1,0 +1,494 @@
+//! Which topics hold the IMU: the only one of its type, the one that was asked for, or a pair whose
+//! names say that one is the gyroscope's and the other the accelerometer's.
+//!
+//! A reader describes every connection that it finds ([`Topics::add`]), has the choice made
+//! ([`Topics::choose`]) whenever one is new, and takes from a message what the [`Role`] of its
+//! connection wants. A thermometer is taken along where there is exactly one.
+
+mod words;
+
+use std::path::Path;
+
+use super::{Note, ReadOptions, Stream};
+use crate::error::Error;
+use words::{Sensor, sensor, twins};
+
+/// Topics listed in an error, at most.
+const LISTED: usize = 40;
+
+/// Connections remembered, at most: a recording has a few dozen.
+const CONNECTIONS: usize = 4096;
+
+/// What the messages of a connection are to us.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Holds {
+    /// Readings of an IMU in a layout that we know.
+    Imu,
+    /// Readings of a thermometer in a layout that we know.
+    Temperature,
+    /// Readings of an IMU that cannot be read, and why: a whole sentence without its beginning.
+    Unreadable(String),
+    /// Something else.
+    Other,
+}
+
+/// A publisher of a topic, as the recording describes it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Connection {
+    /// By which the recording calls it.
+    pub number: u32,
+    /// As the recording writes it.
+    pub topic: String,
+    /// Name of its messages' type.
+    pub type_name: String,
+    /// What they hold.
+    pub holds: Holds,
+}
+
+/// Which sensors are taken from a connection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Role {
+    /// Of the connection.
+    pub number: u32,
+    /// Its angular rates are wanted.
+    pub gyroscope: bool,
+    /// Its specific forces are wanted.
+    pub accelerometer: bool,
+    /// It is the thermometer's, and nothing else.
+    pub temperature: bool,
+}
+
+/// The topics of the two sensors; `None` for one that is not wanted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Wanted {
+    gyroscope: Option<String>,
+    accelerometer: Option<String>,
+}
+
+impl Wanted {
+    /// What one topic gives: both sensors, unless it is named for one.
+    fn by_name(topic: &str) -> Self {
+        let sensor = sensor(topic);
+        let unless = |other| (sensor != Some(other)).then(|| topic.to_owned());
+        Self { gyroscope: unless(Sensor::Accelerometer), accelerometer: unless(Sensor::Gyroscope) }
+    }
+
+    /// What two topics that are named for one sensor each give.
+    fn pair(a: &str, b: &str) -> Self {
+        let (g, a) = if sensor(a) == Some(Sensor::Gyroscope) { (a, b) } else { (b, a) };
+        Self { gyroscope: Some(g.to_owned()), accelerometer: Some(a.to_owned()) }
+    }
+
+    /// What was asked for: one topic, or two joined by a comma, gyroscope's and accelerometer's.
+    fn asked(topics: &str) -> Self {
+        match topics.split_once(',') {
+            None => Self::by_name(topics.trim()),
+            Some((gyroscope, accelerometer)) => Self {
+                gyroscope: Some(gyroscope.trim().to_owned()),
+                accelerometer: Some(accelerometer.trim().to_owned()),
+            },
+        }
+    }
+}
+
+/// What was asked for, what there is, and what is taken.
+#[derive(Clone, Debug)]
+pub struct Topics {
+    asked: Option<Wanted>,
+    /// Of several IMUs the first is taken.
+    survey: bool,
+    connections: Vec<Connection>,
+    /// Messages seen of each.
+    messages: Vec<u64>,
+    roles: Vec<Role>,
+    /// What there is to say about the choice, until it was taken.
+    notes: Vec<Note>,
+    told: bool,
+    /// Where angular rates are found, as the recording writes it; empty where they are not.
+    pub gyroscope: String,
+    /// Where specific forces are found.
+    pub accelerometer: String,
+}
+
+/// `imu` and `/imu` are the same topic.
+fn same(a: &str, b: &str) -> bool {
+    a.trim_start_matches('/') == b.trim_start_matches('/')
+}
+
+impl Topics {
+    /// Nothing is known yet but what is asked for.
+    pub fn new(options: &ReadOptions) -> Self {
+        Self {
+            asked: options.topic.as_deref().map(Wanted::asked),
+            survey: options.survey,
+            connections: Vec::new(),
+            messages: Vec::new(),
+            roles: Vec::new(),
+            notes: Vec::new(),
+            told: false,
+            gyroscope: String::new(),
+            accelerometer: String::new(),
+        }
+    }
+
+    /// What is wanted of this connection's messages.
+    #[inline]
+    pub fn role(&self, number: u32) -> Option<Role> {
+        self.roles.iter().copied().find(|role| role.number == number)
+    }
+
+    /// Whether the bag described this connection.
+    pub fn knows(&self, number: u32) -> bool {
+        self.connections.iter().any(|connection| connection.number == number)
+    }
+
+    /// Whether all that was asked for was found, or, if nothing was, an IMU.
+    pub fn complete(&self) -> bool {
+        let found = |wanted: &Option<String>, topic: &str| wanted.is_none() || !topic.is_empty();
+        match &self.asked {
+            None => self.any(),
+            Some(asked) => {
+                found(&asked.gyroscope, &self.gyroscope)
+                    && found(&asked.accelerometer, &self.accelerometer)
+            }
+        }
+    }
+
+    /// Whether the topic of a sensor was found.
+    pub fn any(&self) -> bool {
+        !self.gyroscope.is_empty() || !self.accelerometer.is_empty()
+    }
+
+    /// Takes note of a connection; whether it is new, so that a choice is to be made.
+    pub fn add(&mut self, connection: Connection) -> bool {
+        if self.knows(connection.number) || self.connections.len() >= CONNECTIONS {
+            return false;
+        }
+        self.connections.push(connection);
+        self.messages.push(0);
+        true
+    }
+
+    /// Counts a message of a connection.
+    pub fn count(&mut self, number: u32) {
+        let place = self.connections.iter().position(|c| c.number == number);
+        if let Some(count) = place.and_then(|place| self.messages.get_mut(place)) {
+            *count += 1;
+        }
+    }
+
+    /// All topics, those of one name and type as one.
+    pub fn streams(&self) -> Vec<Stream> {
+        let mut streams: Vec<Stream> = Vec::new();
+        for (connection, &messages) in self.connections.iter().zip(&self.messages) {
+            let same =
+                |s: &&mut Stream| s.name == connection.topic && s.type_name == connection.type_name;
+            if let Some(stream) = streams.iter_mut().find(same) {
+                stream.messages += messages;
+            } else {
+                streams.push(Stream {
+                    name: connection.topic.clone(),
+                    type_name: connection.type_name.clone(),
+                    messages,
+                    used: self.role(connection.number).is_some(),
+                });
+            }
+        }
+        streams
+    }
+
+    /// Decides who plays which role, of all connections known by now.
+    ///
+    /// # Errors
+    /// When there are several Imu topics, no pair, and none was asked for, or the one asked for is
+    /// none.
+    pub fn choose(&mut self, path: &Path) -> Result<(), Error> {
+        let mut notes = Vec::new();
+        let wanted = match &self.asked {
+            Some(asked) => Some(asked.clone()),
+            None => self.find(path, &mut notes)?,
+        };
+        self.roles.clear();
+        if let Some(wanted) = &wanted {
+            self.take_sensors(wanted, path)?;
+            notes.extend(self.half(wanted, path));
+        }
+        self.take_thermometer(path, &mut notes);
+        if self.notes != notes {
+            (self.notes, self.told) = (notes, false);
+        }
+        Ok(())
+    }
+
+    /// What to take where nothing was asked for; nothing as long as there is no IMU.
+    fn find(&self, path: &Path, notes: &mut Vec<Note>) -> Result<Option<Wanted>, Error> {
+        let imu = |c: &Connection| matches!(c.holds, Holds::Imu | Holds::Unreadable(_));
+        let found = self.names(imu);
+        let path = path.display();
+        match *found.as_slice() {
+            [] => Ok(None),
+            [topic] => Ok(Some(Wanted::by_name(topic))),
+            [one, other] if twins(one, other) => {
+                let pair = Wanted::pair(one, other);
+                if let Wanted { gyroscope: Some(g), accelerometer: Some(a) } = &pair {
+                    notes.push(Note::Info(format!(
+                        "{path} has a topic for each sensor: angular rates are taken from {g}, \
+                         specific forces from {a}"
+                    )));
+                }
+                Ok(Some(pair))
+            }
+            [first, ..] if self.survey => {
+                let first = self.names(|c| c.holds == Holds::Imu).first().copied().unwrap_or(first);
+                let wanted = match found.iter().find(|other| twins(first, other)) {
+                    Some(other) => Wanted::pair(first, other),
+                    None => Wanted::by_name(first),
+                };
+                notes.push(Note::Warning(format!(
+                    "{path} has several Imu topics: {}; of them {first} is read, --topic TOPIC \
+                     reads another one",
+                    self.list(imu)
+                )));
+                Ok(Some(wanted))
+            }
+            _ => Err(Error::usage(format!(
+                "{path} has several Imu topics: {}; choose one with --topic TOPIC, or \
+                 --topic GYROSCOPE,ACCELEROMETER where each sensor has its own",
+                self.list(imu),
+            ))),
+        }
+    }
+
+    /// Gives the connections of the wanted topics their roles.
+    fn take_sensors(&mut self, wanted: &Wanted, path: &Path) -> Result<(), Error> {
+        let Self { connections, roles, .. } = self;
+        let is = |topic: &str, wanted: &Option<String>| {
+            wanted.as_deref().is_some_and(|wanted| same(topic, wanted))
+        };
+        for connection in connections.iter() {
+            let Connection { number, topic, .. } = connection;
+            let gyroscope = is(topic, &wanted.gyroscope);
+            let accelerometer = is(topic, &wanted.accelerometer);
+            // A topic may carry two types of messages, of which one is meant.
+            let other = |c: &Connection| c.holds == Holds::Imu && same(&c.topic, topic);
+            let meant = connection.holds != Holds::Other || !connections.iter().any(other);
+            if !meant || (!gyroscope && !accelerometer) {
+                continue;
+            }
+            check(connection, path)?;
+            if gyroscope {
+                self.gyroscope.clone_from(topic);
+            }
+            if accelerometer {
+                self.accelerometer.clone_from(topic);
+            }
+            roles.push(Role { number: *number, gyroscope, accelerometer, temperature: false });
+        }
+        Ok(())
+    }
+
+    /// Takes the thermometer, if there is exactly one.
+    fn take_thermometer(&mut self, path: &Path, notes: &mut Vec<Note>) {
+        let thermometer = |c: &Connection| c.holds == Holds::Temperature;
+        if self.names(thermometer).len() > 1 {
+            notes.push(Note::Info(format!(
+                "{} has several thermometers, of which none is read: {}",
+                path.display(),
+                self.list(thermometer)
+            )));
+            return;
+        }
+        let of = |c: &Connection| Role {
+            number: c.number,
+            gyroscope: false,
+            accelerometer: false,
+            temperature: true,
+        };
+        self.roles.extend(self.connections.iter().filter(|c| thermometer(c)).map(of));
+    }
+
+    /// What to say where a topic is named for one sensor, and its messages have fields for both.
+    fn half(&self, wanted: &Wanted, path: &Path) -> Option<Note> {
+        let (topic, named, left_out) = match wanted {
+            Wanted { gyroscope: Some(_), accelerometer: None } => {
+                (&self.gyroscope, "gyroscope", "specific forces")
+            }
+            Wanted { gyroscope: None, accelerometer: Some(_) } => {
+                (&self.accelerometer, "accelerometer", "angular rates")
+            }
+            _ => return None,
+        };
+        (!topic.is_empty()).then(|| {
+            Note::Info(format!(
+                "topic {topic} of {} is named for the {named}, so its {left_out} are left out; \
+                 --topic {topic},{topic} takes both",
+                path.display()
+            ))
+        })
+    }
+
+    /// Takes what there is to tell about the choice; the same is told once.
+    pub fn take_notes(&mut self) -> Vec<Note> {
+        if std::mem::replace(&mut self.told, true) { Vec::new() } else { self.notes.clone() }
+    }
+
+    /// The error for a bag whose end was reached, or whose list is complete, without finding the
+    /// topics.
+    pub fn not_found(&self, path: &Path) -> Error {
+        let path = path.display();
+        if self.connections.is_empty() {
+            return Error::data(format!("{path} holds no messages"));
+        }
+        let all = self.list(|_| true);
+        match &self.asked {
+            None => Error::data(format!(
+                "{path} has no topic of an IMU (type sensor_msgs/Imu); it has {all}"
+            )),
+            Some(Wanted { gyroscope, accelerometer }) => {
+                let found = |topic: &str| self.connections.iter().any(|c| same(&c.topic, topic));
+                let mut topics = [gyroscope, accelerometer].into_iter().flatten();
+                let topic = topics.find(|topic| !found(topic)).map_or("", String::as_str);
+                Error::usage(format!("{path} has no topic {topic}; it has {all}"))
+            }
+        }
+    }
+
+    /// The names of topics, each once, in the order of the recording.
+    fn names(&self, which: impl Fn(&Connection) -> bool) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for connection in self.connections.iter().filter(|c| which(c)) {
+            if !names.iter().any(|name| same(name, &connection.topic)) {
+                names.push(&connection.topic);
+            }
+        }
+        names
+    }
+
+    /// The topics in words, each once.
+    fn list(&self, which: impl Fn(&Connection) -> bool) -> String {
+        let mut listed: Vec<String> = Vec::new();
+        let mut more = 0;
+        for connection in self.connections.iter().filter(|c| which(c)) {
+            let one = format!("{} ({})", connection.topic, connection.type_name);
+            if listed.contains(&one) {
+            } else if listed.len() < LISTED {
+                listed.push(one);
+            } else {
+                more += 1;
+            }
+        }
+        let mut list = listed.join(", ");
+        if more > 0 {
+            list.push_str(&format!(" and {more} more"));
+        }
+        list
+    }
+}
+
+/// A chosen topic must hold the message that we know.
+fn check(connection: &Connection, path: &Path) -> Result<(), Error> {
+    let Connection { topic, type_name, .. } = connection;
+    let path = path.display();
+    match &connection.holds {
+        Holds::Imu => Ok(()),
+        Holds::Unreadable(why) => Err(Error::data(format!("topic {topic} of {path} {why}"))),
+        Holds::Temperature | Holds::Other => Err(Error::usage(format!(
+            "topic {topic} of {path} holds {type_name}, not sensor_msgs/Imu: choose another one"
+        ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn topics(options: &ReadOptions, all: &[(&str, Holds)]) -> Topics {
+        let mut topics = Topics::new(options);
+        for (number, (topic, holds)) in (0..).zip(all) {
+            let (topic, type_name) = ((*topic).to_owned(), "a type".to_owned());
+            assert!(topics.add(Connection { number, topic, type_name, holds: holds.clone() }));
+        }
+        topics
+    }
+
+    fn asked(topic: &str) -> ReadOptions {
+        ReadOptions { topic: Some(topic.into()), ..ReadOptions::default() }
+    }
+
+    const GYRO: (&str, Holds) = ("/camera/gyro/sample", Holds::Imu);
+    const ACCEL: (&str, Holds) = ("/camera/accel/sample", Holds::Imu);
+    const IMU: (&str, Holds) = ("/imu", Holds::Imu);
+
+    #[test]
+    fn a_pair_is_found_in_either_order_and_told_once() {
+        for all in [[GYRO, ACCEL], [ACCEL, GYRO]] {
+            let mut topics = topics(&ReadOptions::default(), &all);
+            topics.choose("a".as_ref()).unwrap();
+            assert_eq!((&*topics.gyroscope, &*topics.accelerometer), (GYRO.0, ACCEL.0));
+            for (number, (name, _)) in (0..).zip(&all) {
+                let role = topics.role(number).unwrap();
+                assert_eq!(role.gyroscope, *name == GYRO.0);
+                assert_eq!(role.accelerometer, *name == ACCEL.0);
+            }
+            topics.choose("a".as_ref()).unwrap();
+            assert!(matches!(&topics.take_notes()[..], [Note::Info(_)]));
+            topics.choose("a".as_ref()).unwrap();
+            assert_eq!(topics.take_notes(), []);
+            assert!(topics.complete());
+        }
+    }
+
+    #[test]
+    fn a_topic_named_for_one_sensor_gives_that_one() {
+        for (all, options) in [
+            (vec![GYRO], ReadOptions::default()),
+            (vec![IMU, GYRO, ACCEL], asked("camera/gyro/sample")),
+        ] {
+            let mut topics = topics(&options, &all);
+            topics.choose("a".as_ref()).unwrap();
+            assert_eq!((&*topics.gyroscope, &*topics.accelerometer), (GYRO.0, ""));
+            assert!(topics.complete());
+            assert!(matches!(&topics.take_notes()[..], [Note::Info(n)] if n.contains("left out")));
+        }
+        let mut topics = topics(&asked("/camera/gyro/sample,camera/gyro/sample"), &[GYRO]);
+        topics.choose("a".as_ref()).unwrap();
+        assert_eq!((&*topics.gyroscope, &*topics.accelerometer), (GYRO.0, GYRO.0));
+        assert_eq!(topics.take_notes(), []);
+    }
+
+    #[test]
+    fn of_several_a_survey_takes_the_first_with_its_twin() {
+        let survey = ReadOptions { survey: true, ..ReadOptions::default() };
+        for (all, expected) in [
+            ([IMU, GYRO, ACCEL], ("/imu", "/imu")),
+            ([GYRO, IMU, ACCEL], (GYRO.0, ACCEL.0)),
+            ([("/odd", Holds::Unreadable("is odd".into())), IMU, ACCEL], ("/imu", "/imu")),
+        ] {
+            let mut topics = topics(&survey, &all);
+            topics.choose("a".as_ref()).unwrap();
+            assert_eq!((&*topics.gyroscope, &*topics.accelerometer), expected);
+            let notes = topics.take_notes();
+            let [Note::Warning(told)] = &notes[..] else { panic!("{notes:?}") };
+            for (topic, _) in &all {
+                assert!(told.contains(topic), "{told}");
+            }
+        }
+        let error = topics(&ReadOptions::default(), &[IMU, GYRO, ACCEL]).choose("a".as_ref());
+        assert_eq!(error.unwrap_err().exit_code(), 2);
+    }
+
+    #[test]
+    fn the_only_thermometer_is_taken() {
+        let one = [IMU, ("/t", Holds::Temperature), ("/t", Holds::Temperature)];
+        let mut one = topics(&ReadOptions::default(), &one);
+        one.choose("a".as_ref()).unwrap();
+        assert!(one.role(1).unwrap().temperature && one.role(2).unwrap().temperature);
+        assert_eq!(one.take_notes(), []);
+
+        let two = [IMU, ("/t", Holds::Temperature), ("/u", Holds::Temperature)];
+        let mut two = topics(&ReadOptions::default(), &two);
+        two.choose("a".as_ref()).unwrap();
+        assert_eq!((two.role(1), two.role(2)), (None, None));
+        assert!(matches!(&two.take_notes()[..], [Note::Info(told)] if told.contains("/u")));
+    }
+}
