@@ -33,6 +33,7 @@ mod input;
 pub mod timeline;
 mod topics;
 mod units;
+mod unpack;
 
 use std::io::Read;
 use std::path::Path;
@@ -179,7 +180,7 @@ pub struct ReadOptions {
 /// # Errors
 /// When there is no such file, its format is unknown, or it holds no IMU.
 pub fn open(path: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Error> {
-    recognise(Input::open(path)?, options)
+    read_inside(Input::open(path)?, options)
 }
 
 /// Reads a recording from any stream, front to back; errors call it `path`.
@@ -191,7 +192,13 @@ pub fn read_from(
     stream: Box<dyn Read + Send>,
     options: &ReadOptions,
 ) -> Result<Box<dyn Source>, Error> {
-    recognise(Input::pipe(path, stream), options)
+    read_inside(Input::pipe(path, stream), options)
+}
+
+/// Reads what is inside of compression and of UTF-16.
+fn read_inside(input: Input, options: &ReadOptions) -> Result<Box<dyn Source>, Error> {
+    let (input, layers) = unpack::unpack(input)?;
+    layers.around(recognise(input, options))
 }
 
 /// The reader of the format that the first bytes show.
