@@ -3,7 +3,8 @@
 //! An [`Output`] is a temporary file in the folder of its target, renamed to it by
 //! [`Output::finish`]. Dropped before that, it leaves nothing behind. `-` is the standard output,
 //! and a path that exists but is no regular file (`/dev/null`, a named pipe) is written in place.
-//! A program that is killed in between leaves its temporary file, `.imu-XXXXXX.part`: delete it.
+//! A program that is interrupted removes what it has not finished ([`clean_up_on_signals`]); one that
+//! is killed outright leaves its temporary file, `.imu-XXXXXX.part`: delete it.
 //!
 //! ```
 //! use imu_tools::output::Output;
@@ -16,6 +17,8 @@
 //! assert_eq!(std::fs::read(&path).unwrap(), b"hello");
 //! ```
 
+mod unfinished;
+
 use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -23,6 +26,8 @@ use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
 use crate::error::Error;
+use unfinished::Unfinished;
+pub use unfinished::clean_up_on_signals;
 
 /// A file in the making. It keeps no buffer: write large pieces.
 #[derive(Debug)]
@@ -33,7 +38,7 @@ pub struct Output {
 
 #[derive(Debug)]
 enum To {
-    Whole(NamedTempFile),
+    Whole { file: NamedTempFile, unfinished: Unfinished },
     InPlace(File),
     Stdout(io::Stdout),
 }
@@ -71,7 +76,13 @@ impl Output {
                     // What any new file gets: the umask takes its part away.
                     builder.permissions(fs::Permissions::from_mode(0o666));
                 }
-                To::Whole(builder.tempfile_in(folder(&path)).map_err(|e| refused(bare(e)))?)
+                let made = Unfinished::create(|| {
+                    let file = builder.tempfile_in(folder(&path))?;
+                    let at = file.path().to_owned();
+                    Ok((file, at))
+                });
+                let (file, unfinished) = made.map_err(|e| refused(bare(e)))?;
+                To::Whole { file, unfinished }
             }
         };
         Ok(Self { path, to })
@@ -83,7 +94,7 @@ impl Output {
     /// When the disk is full or the pipe's reader has gone.
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), Error> {
         match &mut self.to {
-            To::Whole(file) => file.as_file_mut().write_all(bytes),
+            To::Whole { file, .. } => file.as_file_mut().write_all(bytes),
             To::InPlace(file) => file.write_all(bytes),
             To::Stdout(stdout) => stdout.write_all(bytes),
         }
@@ -97,7 +108,7 @@ impl Output {
     /// As [`Output::write`].
     pub fn patch(&mut self, offset: u64, bytes: &[u8]) -> Result<bool, Error> {
         use std::io::Seek as _;
-        let To::Whole(file) = &mut self.to else { return Ok(false) };
+        let To::Whole { file, .. } = &mut self.to else { return Ok(false) };
         let file = file.as_file_mut();
         let end = file.stream_position();
         end.and_then(|end| {
@@ -115,7 +126,9 @@ impl Output {
     /// As [`Output::write`]; then nothing is left behind.
     pub fn finish(self) -> Result<(), Error> {
         match self.to {
-            To::Whole(file) => file.persist(&self.path).map(drop).map_err(|e| e.error),
+            To::Whole { file, unfinished } => {
+                unfinished.settle(|| file.persist(&self.path).map(drop).map_err(|e| e.error))
+            }
             To::InPlace(mut file) => file.flush(),
             To::Stdout(mut stdout) => stdout.flush(),
         }

@@ -132,6 +132,13 @@ impl BlockMeans {
         }
     }
 
+    /// A [`restart`](Self::restart) after which samples may lie elsewhere: the next ones show anew what
+    /// is normal.
+    pub fn next_record(&mut self) {
+        self.restart();
+        self.waiting = Some(Vec::new());
+    }
+
     /// Samples a block, a power of two.
     #[must_use]
     pub fn length(&self) -> u64 {

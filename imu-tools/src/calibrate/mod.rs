@@ -24,12 +24,10 @@ pub mod maximum_likelihood;
 mod sensor;
 pub mod slope;
 
-use std::sync::mpsc::sync_channel;
-
 use imu_core::allan::{Contradiction, Octave, Parameter};
 
 use crate::error::Error;
-use crate::recording::{Block, Note, Sample, Source, Summary};
+use crate::recording::{Block, Note, Sample, Source, Summary, read_ahead};
 use sensor::Pipeline;
 
 /// Octaves of τ that a ladder holds here: at 1 kHz the longest is 12 days.
@@ -38,9 +36,9 @@ pub const LEVELS: usize = 31;
 /// What to leave out, and how to estimate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
-    /// Start this many seconds after the first sample.
+    /// Start this many seconds after the first sample of each record.
     pub from_s: Option<f64>,
-    /// End this many seconds after the first sample.
+    /// End this many seconds after the first sample of each record.
     pub to_s: Option<f64>,
     /// The user has said what unit the accelerometer is in: gravity that contradicts it is only
     /// worth a warning.
@@ -64,8 +62,10 @@ pub enum Estimator {
 /// What a recording says about its IMU.
 #[derive(Clone, Debug)]
 pub struct Calibration {
-    /// The recording's name.
+    /// The recording's name; of several, all of them.
     pub path: String,
+    /// The names of the files one by one, by their first stamps.
+    pub paths: Vec<String>,
     /// Length of the longer sensor's record, seconds.
     pub span_s: f64,
     /// What was taken for granted.
@@ -111,6 +111,8 @@ pub struct SensorNoise {
     pub rejected: u64,
     /// Mean of each axis, in the sensor's unit.
     pub mean: [f64; 3],
+    /// The same of each record ([`Source::record_number`]) that has samples: bias and attitude may differ.
+    pub record_means: Vec<(usize, [f64; 3])>,
     /// x, y and z on their own.
     pub axes: [AxisNoise; 3],
     /// All axes by their joint likelihood.
@@ -169,12 +171,20 @@ pub fn calibrate(
     let mut gyroscope = Pipeline::new(SensorKind::Gyroscope, options.estimator);
     let mut accelerometer = Pipeline::new(SensorKind::Accelerometer, options.estimator);
     let mut samples = 0;
-    let mut source = read_ahead(source, |block, bytes| {
+    let mut record = 0;
+    let mut source = read_ahead(source, |block, at| {
+        if at.record != record {
+            record = at.record;
+            window = Window::new(options);
+            gyroscope.next_record();
+            accelerometer.next_record();
+        }
         window.open(block);
         gyroscope.push(window.cut(&block.gyroscope));
         accelerometer.push(window.cut(&block.accelerometer));
         samples += block.gyroscope.len().max(block.accelerometer.len()) as u64;
-        progress(Progress { bytes, samples });
+        progress(Progress { bytes: at.bytes, samples });
+        Ok(())
     })?;
 
     let (mut remarks, mut warnings) = (Vec::new(), Vec::new());
@@ -212,14 +222,19 @@ pub fn calibrate(
             )));
         }
     }
-    if let Some(sensor) = &accelerometer {
-        match gravity::check(sensor.mean) {
+    for (record, mean) in accelerometer.iter().flat_map(|sensor| &sensor.record_means) {
+        let name = source.record_name(*record);
+        match gravity::check(*mean) {
             gravity::Verdict::Plausible => {}
             gravity::Verdict::OtherUnit(sentence) if !options.unit_is_given => {
-                return Err(Error::data(format!("{path}: {sentence}")));
+                let name = name.as_deref().unwrap_or(path);
+                return Err(Error::data(format!("{name}: {sentence}")));
             }
             gravity::Verdict::OtherUnit(sentence) | gravity::Verdict::Odd(sentence) => {
-                warnings.push(sentence);
+                warnings.push(match name {
+                    Some(name) => format!("{name}: {sentence}"),
+                    None => sentence,
+                });
             }
         }
     }
@@ -229,6 +244,7 @@ pub fn calibrate(
     let span = |sensor: &Option<SensorNoise>| sensor.as_ref().map_or(0.0, |s| s.stamps.span_s);
     Ok(Calibration {
         path: path.to_owned(),
+        paths: vec![path.to_owned()],
         span_s: span(&gyroscope).max(span(&accelerometer)),
         remarks,
         warnings,
@@ -249,38 +265,7 @@ fn too_few(path: &str, samples: u64, options: &Options) -> Error {
     ))
 }
 
-/// Reads blocks on a thread of its own, at most a few ahead, and hands them to `take` in order.
-/// Blocks are used again, so memory does not grow.
-fn read_ahead(
-    mut source: Box<dyn Source>,
-    mut take: impl FnMut(&Block, u64),
-) -> Result<Box<dyn Source>, Error> {
-    const AHEAD: usize = 4;
-    std::thread::scope(|scope| {
-        let (full, filled) = sync_channel::<(Block, u64)>(AHEAD);
-        let (used, empty) = sync_channel::<Block>(AHEAD + 2);
-        let reader = scope.spawn(move || {
-            loop {
-                let mut block = empty.try_recv().unwrap_or_default();
-                if !source.next_block(&mut block)? {
-                    return Ok(source);
-                }
-                let bytes = source.bytes_read();
-                if full.send((block, bytes)).is_err() {
-                    return Ok(source); // nobody listens any more
-                }
-            }
-        });
-        for (block, bytes) in filled {
-            take(&block, bytes);
-            // The reader may have ended: then the block is simply dropped.
-            let _ = used.try_send(block);
-        }
-        reader.join().unwrap_or_else(|_| Err(Error::data("the reader stopped unexpectedly")))
-    })
-}
-
-/// The part of a recording between --from and --to.
+/// The part of each record between --from and --to.
 struct Window {
     from_ns: i64,
     to_ns: i64,

@@ -30,12 +30,16 @@ struct Taken {
     estimator: Estimator,
     /// Begun when the first values show what is normal.
     ladder: Option<SensorLadder>,
+    /// What the ladders of the records before this one gathered.
+    earlier: Option<SensorLadder>,
     /// Only for maximum likelihood.
     means: Option<BlockMeans>,
-    /// Σ of values less the first reference, and how many.
+    /// Σ of values less the first reference of this record, and how many.
     sum: [f64; 3],
     offset: [f64; 3],
     count: u64,
+    /// Mean and count of the records before this one; a record without a sample has no count.
+    records: Vec<([f64; 3], u64)>,
 }
 
 impl Pipeline {
@@ -45,10 +49,12 @@ impl Pipeline {
             kind,
             estimator,
             ladder: None,
+            earlier: None,
             means,
             sum: [0.0; 3],
             offset: [0.0; 3],
             count: 0,
+            records: Vec::new(),
         };
         Self { kind, timeline: Timeline::new(), taken }
     }
@@ -58,17 +64,35 @@ impl Pipeline {
         self.timeline.push(samples, |event| taken.take(event));
     }
 
+    /// Another record follows: no difference spans the break, all sums add.
+    pub(super) fn next_record(&mut self) {
+        let taken = &mut self.taken;
+        self.timeline.next_record(|event| taken.take(event));
+        taken.close_record();
+    }
+
     /// The noise, or nothing if there was not a sample.
     pub(super) fn finish(self, topic: &str) -> Option<SensorNoise> {
         let Self { kind, timeline, mut taken } = self;
         let stamps = timeline.finish(|event| taken.take(event));
-        let ladder = taken.ladder?;
-        let count = taken.count.max(1) as f64;
-        let mut mean = taken.offset;
-        for (mean, sum) in mean.iter_mut().zip(taken.sum) {
-            *mean += sum / count;
+        taken.close_record();
+        let ladder = taken.earlier?;
+        let count = taken.records.iter().map(|(_, count)| count).sum::<u64>().max(1) as f64;
+        let mut mean = [0.0; 3];
+        for (of_record, samples) in &taken.records {
+            let share = *samples as f64 / count;
+            for (mean, of_record) in mean.iter_mut().zip(of_record) {
+                *mean += share * of_record;
+            }
         }
         let mut noise = noise(kind, topic, stamps, &ladder, mean);
+        noise.record_means = taken
+            .records
+            .iter()
+            .enumerate()
+            .filter(|(_, (_, count))| *count > 0)
+            .map(|(record, (mean, _))| (record, *mean))
+            .collect();
         match taken.estimator {
             Estimator::Octaves => {}
             Estimator::MaximumLikelihood => noise.by_maximum_likelihood(&taken.means?),
@@ -79,6 +103,25 @@ impl Pipeline {
 }
 
 impl Taken {
+    /// Puts the record at hand beside those before it; the next one has a reference of its own.
+    fn close_record(&mut self) {
+        if let Some(ladder) = self.ladder.take() {
+            match &mut self.earlier {
+                Some(earlier) => earlier.pool(&ladder),
+                None => self.earlier = Some(ladder),
+            }
+        }
+        if let Some(means) = &mut self.means {
+            means.next_record();
+        }
+        let count = std::mem::take(&mut self.count);
+        let mut mean = std::mem::take(&mut self.offset);
+        for (mean, sum) in mean.iter_mut().zip(std::mem::take(&mut self.sum)) {
+            *mean += sum / count.max(1) as f64;
+        }
+        self.records.push((mean, count));
+    }
+
     fn take(&mut self, event: Event<'_>) {
         match event {
             Event::Values(values) => {
@@ -194,6 +237,7 @@ fn noise(
         stamps,
         rejected: ladder.rejected_samples(),
         mean,
+        record_means: Vec::new(),
         axes: fits
             .map(|f| AxisNoise { noise_density: f.noise_density, random_walk: f.random_walk }),
         pooled: AxisNoise { noise_density: pooled.noise_density, random_walk: pooled.random_walk },

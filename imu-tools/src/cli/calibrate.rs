@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::progress;
-use super::reading::Reading;
+use super::reading::{Opened, Reading};
 use crate::calibrate::{Calibration, Estimator, Options, calibrate};
 use crate::error::Error;
 use crate::output::Output;
-use crate::recording;
 use crate::report;
 
 const EXAMPLES: &str = "\
@@ -21,6 +20,8 @@ Examples:
   imu calibrate log.csv --columns t,ax,ay,az,gx,gy,gz --gyro-unit deg/s --accel-unit g --json
   imu calibrate still.bag --from 120 --to 14000
       without the time when a hand was still on the sensor
+  imu calibrate night_*.bag
+      several files: one recording in pieces, or several nights of one sensor
   imu simulate high --duration 1h -o - | imu calibrate -
 
 Record the sensor at rest, warmed up, on something solid: a minute shows N, hours show K.";
@@ -32,19 +33,20 @@ Record the sensor at rest, warmed up, on something solid: a minute shows N, hour
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Calibrate {
-    /// The recording: a .bag or .csv file, or - for a pipe
-    #[arg(value_name = "FILE")]
-    file: PathBuf,
+    /// The recording, or - for a pipe; several files are joined where one goes on where another
+    /// ends, and pooled where they are of other days or sensors
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
     /// Write imu.yaml and allan.csv into this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Print one JSON object instead of a table
     #[arg(long)]
     json: bool,
-    /// Start this many seconds after the first sample
+    /// Start this many seconds after the first sample (of each record, where files are pooled)
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     from: Option<f64>,
-    /// End this many seconds after the first sample
+    /// End this many seconds after the first sample (of each record, where files are pooled)
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     to: Option<f64>,
     /// How to estimate N and K
@@ -67,13 +69,11 @@ enum EstimatorName {
 impl Calibrate {
     pub(super) fn run(self) -> Result<(), Error> {
         let options = self.options()?;
-        let source = recording::open(&self.file, &self.reading.options())?;
+        let Opened { source, names } = self.reading.open(&self.files)?;
         let bar = progress::bytes(source.bytes_total(), "reading");
-        let name = match self.file.to_str() {
-            Some("-") => "the pipe".to_owned(),
-            _ => self.file.display().to_string(),
-        };
-        let calibration = calibrate(source, &name, &options, |at| bar.set_position(at.bytes))?;
+        let all = names.join(", ");
+        let mut calibration = calibrate(source, &all, &options, |at| bar.set_position(at.bytes))?;
+        calibration.paths = names;
         bar.finish_and_clear();
         if let Some(folder) = &self.output {
             write_into(folder, &calibration)?;

@@ -5,6 +5,7 @@
 //! closes the pipe early (`imu … | head`) ends the program quietly.
 
 mod calibrate;
+mod convert;
 mod demo;
 mod progress;
 mod reading;
@@ -18,6 +19,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::error::Error;
+use crate::output;
+use crate::recording::{self, Format, Sink};
 
 /// Calibrate an IMU's noise, or simulate one: from a recording to noise numbers to trust.
 #[derive(Debug, Parser)]
@@ -30,6 +33,7 @@ struct Imu {
 #[derive(Debug, Subcommand)]
 enum Command {
     Calibrate(calibrate::Calibrate),
+    Convert(convert::Convert),
     Demo(demo::Demo),
     Simulate(simulate::Simulate),
 }
@@ -37,6 +41,7 @@ enum Command {
 /// Runs the program on its own arguments.
 #[must_use]
 pub fn run() -> ExitCode {
+    output::clean_up_on_signals();
     run_with(std::env::args_os())
 }
 
@@ -47,6 +52,7 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let result = match command {
         Command::Calibrate(calibrate) => calibrate.run(),
+        Command::Convert(convert) => convert.run(),
         Command::Demo(demo) => demo.run(),
         Command::Simulate(simulate) => simulate.run(),
     };
@@ -73,6 +79,32 @@ fn print(text: &str) -> Result<(), Error> {
 fn say(sentence: &str) {
     // A program that cannot complain has nobody left to tell.
     let _ = writeln!(io::stderr(), "{sentence}");
+}
+
+/// Starts a recording at `path`: in `format`, or in that which its name says.
+fn create(path: &Path, format: Option<Format>) -> Result<Box<dyn Sink>, Error> {
+    match format {
+        Some(format) => recording::create_as(path, format),
+        None => recording::create(path),
+    }
+}
+
+/// A file to be written as a person knows it.
+fn target_name(path: &Path) -> String {
+    match path.to_str() {
+        Some("-") => "the pipe".into(),
+        _ => path.display().to_string(),
+    }
+}
+
+/// Whether two paths to be written lead to one file, through links or by other names of its folder,
+/// or both to the standard output.
+fn same_target(a: &Path, b: &Path) -> bool {
+    let target = |path: &Path| match path.to_str() {
+        Some("-") => output::target(Path::new("/dev/stdout")),
+        _ => output::target(path),
+    };
+    a == b || target(a) == target(b)
 }
 
 /// Prints clap's help as it is, and its complaints as one sentence.

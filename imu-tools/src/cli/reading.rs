@@ -1,8 +1,11 @@
 //! The flags that say how to read a recording, shared by every subcommand that reads one.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
-use crate::recording::{ForceUnit, RateUnit, ReadOptions, TimeUnit};
+use crate::error::Error;
+use crate::recording::{self, ForceUnit, Joined, RateUnit, ReadOptions, Source, TimeUnit};
 
 /// How to read a recording, where it does not say so itself.
 #[derive(Args, Debug)]
@@ -28,9 +31,34 @@ pub(super) struct Reading {
     time_unit: Option<TimeUnit>,
 }
 
+/// A recording that was opened.
+pub(super) struct Opened {
+    /// What reads it.
+    pub(super) source: Box<dyn Source>,
+    /// The names of its files, in the order in which they are read.
+    pub(super) names: Vec<String>,
+}
+
 impl Reading {
+    /// Opens a file, or several as one recording.
+    pub(super) fn open(&self, files: &[PathBuf]) -> Result<Opened, Error> {
+        if let [file] = files {
+            let name = match file.to_str() {
+                Some("-") => "the pipe".to_owned(),
+                _ => file.display().to_string(),
+            };
+            return Ok(Opened {
+                source: recording::open(file, &self.options())?,
+                names: vec![name],
+            });
+        }
+        let joined = Joined::open(files, &self.options())?;
+        let names = joined.names().to_vec();
+        Ok(Opened { source: Box::new(joined), names })
+    }
+
     /// The flags as the library takes them.
-    pub(super) fn options(&self) -> ReadOptions {
+    fn options(&self) -> ReadOptions {
         ReadOptions {
             topic: self.topic.clone(),
             survey: false,

@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::progress;
+use super::{progress, same_target};
 use crate::error::Error;
-use crate::output;
-use crate::recording::{self, Block, Sink};
+use crate::recording::{Block, Format, Sink};
 use crate::scene::{
     Path as Motion, Preset, Rate, Scene, Simulator, TruthWriter, display_duration, parse_duration,
 };
@@ -44,9 +43,12 @@ pub(super) struct Simulate {
     /// low, mid or high, or a TOML scene file
     #[arg(value_name = "SCENE", default_value = "mid")]
     scene: String,
-    /// Where to write: FILE.bag (ROS 1), FILE.csv, or - for CSV into a pipe
+    /// Where to write: FILE.bag (ROS 1), FILE.csv, or - for a pipe
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    /// Write this format whatever the file's name: bag, csv (a pipe's, unless you say otherwise)
+    #[arg(long = "to", value_name = "FORMAT")]
+    format: Option<Format>,
     /// Move on the classic ellipse instead of standing still
     #[arg(long)]
     moving: bool,
@@ -78,7 +80,7 @@ impl Simulate {
         }
         let mut simulator = Simulator::new(&scene)?;
         let samples = simulator.samples_left();
-        let mut sink = recording::create(&self.output)?;
+        let mut sink = super::create(&self.output, self.format)?;
         let mut truth = self.truth.as_deref().map(TruthWriter::create).transpose()?;
         write(&mut simulator, sink.as_mut(), truth.as_mut())?;
         sink.finish()?;
@@ -115,10 +117,7 @@ impl Simulate {
     }
 
     fn summary(&self, scene: &Scene, samples: u64) -> String {
-        let to = match self.output.to_str() {
-            Some("-") => "the pipe".into(),
-            _ => self.output.display().to_string(),
-        };
+        let to = super::target_name(&self.output);
         let truth = match &self.truth {
             Some(path) => format!(", and the truth to {}", path.display()),
             None => String::new(),
@@ -150,16 +149,6 @@ fn write(
         sink.write_block(&block)?;
         bar.inc(block.gyroscope.len() as u64);
     }
-}
-
-/// Whether two paths lead to one file, through links or by other names of its folder, or both to
-/// the standard output.
-fn same_target(a: &Path, b: &Path) -> bool {
-    let target = |path: &Path| match path.to_str() {
-        Some("-") => output::target(Path::new("/dev/stdout")),
-        _ => output::target(path),
-    };
-    a == b || target(a) == target(b)
 }
 
 /// Reads a scene file; a word that is neither a file nor a preset is a mistake on the command line.

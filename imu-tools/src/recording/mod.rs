@@ -27,9 +27,14 @@
 //! # Ok::<(), imu_tools::error::Error>(())
 //! ```
 
+mod ahead;
+mod align;
 pub mod bag;
+mod convert;
 pub mod csv;
+mod format;
 mod input;
+mod joined;
 pub mod timeline;
 mod topics;
 mod units;
@@ -38,6 +43,10 @@ mod unpack;
 use std::io::Read;
 use std::path::Path;
 
+pub(crate) use ahead::read_ahead;
+pub use convert::{Converted, convert};
+pub use format::Format;
+pub use joined::Joined;
 pub use timeline::{Event, Gap, Summary, Timeline};
 pub use units::{ForceUnit, RateUnit, TimeUnit};
 
@@ -135,6 +144,18 @@ pub trait Source: Send {
 
     /// Bytes in all, where that is known (not of a pipe).
     fn bytes_total(&self) -> Option<u64>;
+
+    /// The record that the last block belongs to, counted from 0. Nothing connects one with the
+    /// next: another day, or another sensor. Only several files have more than one.
+    fn record_number(&self) -> usize {
+        0
+    }
+
+    /// The files of a record, by name, where there are several records; complete once the end was
+    /// reached.
+    fn record_name(&self, _record: usize) -> Option<String> {
+        None
+    }
 }
 
 /// A recording being written.
@@ -224,21 +245,23 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     Ok(Box::new(csv::CsvReader::open(input, options)?))
 }
 
-/// Starts a recording at `path`: `.bag` or `.csv` by its name, `-` for a CSV on a pipe.
+/// Starts a recording at `path`, in the format that its name says; `-` is a CSV on a pipe.
 ///
 /// # Errors
 /// When the name has another ending, or the folder cannot be written.
 pub fn create(path: &Path) -> Result<Box<dyn Sink>, Error> {
-    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    match ending.as_deref() {
-        Some("bag") => Ok(Box::new(bag::BagWriter::create(path)?)),
-        Some("csv") => Ok(Box::new(csv::CsvWriter::create(path)?)),
-        None if path == Path::new("-") => Ok(Box::new(csv::CsvWriter::create(path)?)),
-        _ => Err(Error::usage(format!(
-            "cannot tell the format of {} from its name: end it with .bag or .csv",
-            path.display()
-        ))),
-    }
+    create_as(path, Format::of(path)?)
+}
+
+/// Starts a recording at `path` (`-` is a pipe) in this format, whatever its name.
+///
+/// # Errors
+/// When the folder cannot be written.
+pub fn create_as(path: &Path, format: Format) -> Result<Box<dyn Sink>, Error> {
+    Ok(match format {
+        Format::Bag => Box::new(bag::BagWriter::create(path)?),
+        Format::Csv => Box::new(csv::CsvWriter::create(path)?),
+    })
 }
 
 /// Walks both sensors of a block by time; samples of one instant come together.

@@ -19,6 +19,7 @@ pub fn calibration(calibration: &Calibration) -> Value {
     json!({
         "recording": {
             "path": calibration.path,
+            "paths": calibration.paths,
             "span_s": calibration.span_s,
             "remarks": calibration.remarks,
             "warnings": calibration.warnings,

@@ -254,8 +254,13 @@ impl Grid {
         if self.points == 0 { 0.0 } else { (self.next - self.period - self.start).max(0.0) }
     }
 
-    /// Root mean square of errors, ns.
-    pub fn jitter_rms(&self) -> f64 {
-        if self.accepted == 0 { 0.0 } else { (self.squares / self.accepted as f64).sqrt() }
+    /// Sum of squared errors, ns², and how many there were.
+    pub fn squared_errors(&self) -> (f64, u64) {
+        (self.squares, self.accepted)
+    }
+
+    /// Nanoseconds between samples.
+    pub fn period(&self) -> f64 {
+        self.period
     }
 }

@@ -96,6 +96,18 @@ pub struct Timeline {
     /// Grid intervals and nanoseconds of the stretches before the last restart.
     intervals: f64,
     nanoseconds: f64,
+    /// Sum of squared errors (ns²) of the records before this one, and their number.
+    squares: f64,
+    accepted: u64,
+}
+
+/// Sampling rate in Hz by the first [`PREFIX`] stamps; `None` where they do not show one.
+pub(crate) fn rate(samples: &[Sample]) -> Option<f64> {
+    /// Fewer stamps than this leave a jittering rate too uncertain.
+    const FEWEST: usize = 64;
+    let samples = samples.get(..PREFIX).unwrap_or(samples);
+    let grid = if samples.len() < FEWEST { None } else { fit::grid(samples) };
+    grid.map(|grid| 1e9 / grid.period())
 }
 
 impl Timeline {
@@ -135,18 +147,37 @@ impl Timeline {
         self.summary.backward += backward;
     }
 
+    /// Hands on what was held back: another record follows, whose first stamps show phase and period
+    /// anew. No difference spans the break, and it is not counted among the restarts.
+    pub fn next_record(&mut self, mut to: impl FnMut(Event<'_>)) {
+        self.close_record(&mut to);
+        if self.last.take().is_some() {
+            to(Event::Restart);
+        }
+    }
+
     /// Hands on what was held back, and says what the stamps were like.
     pub fn finish(mut self, mut to: impl FnMut(Event<'_>)) -> Summary {
-        self.decide(true, &mut to);
-        if let Some(grid) = self.grid.take() {
-            self.close_stretch(&grid);
-            self.summary.jitter_s = grid.jitter_rms() * 1e-9;
+        self.close_record(&mut to);
+        if self.accepted > 0 {
+            self.summary.jitter_s = (self.squares / self.accepted as f64).sqrt() * 1e-9;
         }
         if self.nanoseconds > 0.0 {
             self.summary.rate_hz = 1e9 * self.intervals / self.nanoseconds;
         }
         self.summary.span_s = self.nanoseconds * 1e-9;
         self.summary
+    }
+
+    /// Places all that is pending, and adds the record to the totals.
+    fn close_record(&mut self, to: &mut impl FnMut(Event<'_>)) {
+        self.decide(true, to);
+        if let Some(grid) = self.grid.take() {
+            self.close_stretch(&grid);
+            let (squares, accepted) = grid.squared_errors();
+            self.squares += squares;
+            self.accepted += accepted;
+        }
     }
 
     /// Adds the stretch that ends here to the totals.

@@ -1,0 +1,89 @@
+//! The formats that can be written, and how their names tell them apart.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use crate::error::Error;
+
+/// A format that can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// A ROS 1 bag.
+    Bag,
+    /// A table in text.
+    Csv,
+}
+
+impl Format {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Bag, Self::Csv];
+
+    /// The word for it, which is also the ending of its files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bag => "bag",
+            Self::Csv => "csv",
+        }
+    }
+
+    /// The format that a file of this name would have; `-`, a pipe, is a CSV.
+    ///
+    /// # Errors
+    /// When the name has another ending.
+    pub fn of(path: &Path) -> Result<Self, Error> {
+        if path == Path::new("-") {
+            return Ok(Self::Csv);
+        }
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let found = ending.and_then(|ending| ending.to_lowercase().parse().ok());
+        found.ok_or_else(|| {
+            Error::usage(format!(
+                "cannot tell the format of {} from its name: end it with {}",
+                path.display(),
+                list(".")
+            ))
+        })
+    }
+}
+
+impl FromStr for Format {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|format| format.name() == name);
+        found.ok_or_else(|| format!("the formats that can be written are {}", list("")))
+    }
+}
+
+/// All names, each after `before`: `.bag or .csv`.
+fn list(before: &str) -> String {
+    let mut text = String::new();
+    for (at, format) in Format::ALL.into_iter().enumerate() {
+        text += match at {
+            0 => "",
+            at if at + 1 == Format::ALL.len() => " or ",
+            _ => ", ",
+        };
+        text += before;
+        text += format.name();
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_lead_to_formats_and_back() {
+        for format in Format::ALL {
+            assert_eq!(format.name().parse(), Ok(format));
+            assert_eq!(Format::of(Path::new(&format!("a.b.{}", format.name()))).unwrap(), format);
+        }
+        assert_eq!(Format::of(Path::new("A.BAG")).unwrap(), Format::Bag);
+        let error = Format::of(Path::new("a.xyz")).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().ends_with(&list(".")), "{error}");
+    }
+}
