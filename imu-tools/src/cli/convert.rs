@@ -30,10 +30,10 @@ Examples:
 /// Reads what `imu calibrate` reads, and writes what the name of the last file says. Stamps keep
 /// their nanoseconds, numbers all their digits, in SI units; what the new file cannot hold is said.
 #[derive(Args, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(override_usage = "imu convert [OPTIONS] <FILE>... <NEW>", after_help = EXAMPLES)]
 pub(super) struct Convert {
-    /// The recordings, - for a pipe; and last the file to write, .bag or .csv, - for a pipe
-    #[arg(value_name = "FILE", required = true, num_args = 2..)]
+    /// The recordings (- for a pipe), and last the new file: .bag or .csv, or - for a pipe
+    #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// Write this format whatever the file's name: bag, csv (a pipe's, unless you say otherwise)
     #[arg(long = "to", value_name = "FORMAT")]
@@ -50,8 +50,8 @@ pub(super) struct Convert {
 
 impl Convert {
     pub(super) fn run(self) -> Result<(), Error> {
-        let Some((to, from)) = self.files.split_last() else {
-            return Err(Error::usage("name the recording and the file to write"));
+        let Some((to, from)) = self.files.split_last().filter(|(_, from)| !from.is_empty()) else {
+            return Err(Error::usage("name the recording, and after it the file to write"));
         };
         let to_pipe = to == Path::new("-");
         if self.json && to_pipe {

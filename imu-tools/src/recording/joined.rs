@@ -450,7 +450,7 @@ mod tests {
         let refused = |blocks: &[Block], order: &[usize]| {
             joined(blocks, order).map(drop).unwrap_err().to_string()
         };
-        assert!(refused(&[one.clone()], &[0, 0]).contains("is named twice"));
+        assert!(refused(std::slice::from_ref(&one), &[0, 0]).contains("is named twice"));
         assert!(
             refused(&[one.clone(), one.clone()], &[0, 1]).contains("begin with the same samples")
         );
