@@ -2,5 +2,6 @@
 
 pub mod bags;
 pub mod command;
+pub mod mcaps;
 pub mod monte_carlo;
 pub mod recordings;

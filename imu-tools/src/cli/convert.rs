@@ -32,7 +32,7 @@ Examples:
 #[derive(Args, Debug)]
 #[command(override_usage = "imu convert [OPTIONS] <FILE>... <NEW>", after_help = EXAMPLES)]
 pub(super) struct Convert {
-    /// The recordings (- for a pipe), and last the new file: .bag or .csv, or - for a pipe
+    /// The recordings (- for a pipe), and last the new file: .bag, .mcap or .csv, or - for a pipe
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// Write this format whatever the file's name: bag, csv (a pipe's, unless you say otherwise)

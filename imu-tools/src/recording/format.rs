@@ -10,19 +10,22 @@ use crate::error::Error;
 pub enum Format {
     /// A ROS 1 bag.
     Bag,
+    /// An MCAP file of ROS 2.
+    Mcap,
     /// A table in text.
     Csv,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Bag, Self::Csv];
+    pub const ALL: [Self; 3] = [Self::Bag, Self::Mcap, Self::Csv];
 
     /// The word for it, which is also the ending of its files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bag => "bag",
+            Self::Mcap => "mcap",
             Self::Csv => "csv",
         }
     }

@@ -7,6 +7,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use super::inside::{Compression, Inside};
 use crate::error::Error;
 
 /// Bytes asked of the system at once: large enough to hide the calls, small enough for the
@@ -20,8 +21,13 @@ pub const LARGEST_PIECE: usize = 1 << 20;
 const WORTH_A_SEEK: u64 = 1 << 20;
 
 enum From {
-    File { file: File, len: u64 },
+    File {
+        file: File,
+        len: u64,
+    },
     Pipe(Box<dyn Read + Send>),
+    /// A compressed piece, with the file around it.
+    Inside(Box<Inside>),
 }
 
 /// A buffered reader that shows its buffer.
@@ -83,6 +89,50 @@ impl Input {
         match self.from {
             From::File { len, .. } => Some(len),
             From::Pipe(_) => None,
+            From::Inside(ref inside) => inside.outer().len(),
+        }
+    }
+
+    /// Offset in the file, also where [`Input::offset`] counts the bytes of a compressed piece.
+    pub fn file_offset(&self) -> u64 {
+        match &self.from {
+            From::Inside(inside) => inside.outer().file_offset(),
+            _ => self.offset,
+        }
+    }
+
+    /// Goes into the compressed piece that is the next `len` bytes: from here on its contents are
+    /// at hand, and offsets count from its start.
+    pub fn enter(&mut self, len: u64, compression: Compression) {
+        let empty = Self {
+            path: self.path.clone(),
+            from: From::Pipe(Box::new(io::empty())),
+            buffer: Vec::new(),
+            start: 0,
+            end: 0,
+            offset: 0,
+        };
+        let outer = std::mem::replace(self, empty);
+        self.from = From::Inside(Box::new(Inside::new(outer, len, compression)));
+    }
+
+    /// Whether the piece that was entered could not be decompressed to its end.
+    pub fn is_damaged(&self) -> bool {
+        matches!(&self.from, From::Inside(inside) if inside.is_damaged())
+    }
+
+    /// Goes back to the file, behind the piece; `false` when the file ends before.
+    pub fn leave(&mut self) -> Result<bool, Error> {
+        match std::mem::replace(&mut self.from, From::Pipe(Box::new(io::empty()))) {
+            From::Inside(inside) => {
+                let (outer, left) = inside.leave();
+                *self = outer;
+                self.skip(left)
+            }
+            other => {
+                self.from = other;
+                Ok(true)
+            }
         }
     }
 
@@ -100,12 +150,13 @@ impl Input {
                 self.start = 0;
             }
             if self.buffer.len() < wanted {
-                self.buffer.resize(wanted.next_power_of_two(), 0);
+                self.buffer.resize(wanted.next_power_of_two().max(BUFFER), 0);
             }
             let free = self.buffer.get_mut(self.end..).unwrap_or_default();
             let read = match &mut self.from {
                 From::File { file, .. } => file.read(free),
                 From::Pipe(stream) => stream.read(free),
+                From::Inside(inside) => Ok(inside.read(free)?),
             };
             match read {
                 Ok(0) => return Ok(false),

@@ -34,7 +34,10 @@ mod convert;
 pub mod csv;
 mod format;
 mod input;
+mod inside;
 mod joined;
+pub mod mcap;
+mod ros2;
 pub mod timeline;
 mod topics;
 mod units;
@@ -236,9 +239,14 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     {
         return Ok(Box::new(bag::BagReader::open(input, options)?));
     }
+    if start.starts_with(mcap::MAGIC)
+        || path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mcap"))
+    {
+        return Ok(Box::new(mcap::McapReader::open(input, options)?));
+    }
     if start.contains(&0) {
         return Err(Error::data(format!(
-            "{} is neither a ROS 1 bag nor a table of numbers in text",
+            "{} is neither a ROS 1 bag, an MCAP file nor a table of numbers in text",
             path.display()
         )));
     }
@@ -260,6 +268,7 @@ pub fn create(path: &Path) -> Result<Box<dyn Sink>, Error> {
 pub fn create_as(path: &Path, format: Format) -> Result<Box<dyn Sink>, Error> {
     Ok(match format {
         Format::Bag => Box::new(bag::BagWriter::create(path)?),
+        Format::Mcap => Box::new(mcap::McapWriter::create(path)?),
         Format::Csv => Box::new(csv::CsvWriter::create(path)?),
     })
 }

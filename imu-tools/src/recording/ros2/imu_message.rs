@@ -1,0 +1,131 @@
+//! The message `sensor_msgs/msg/Imu`: a header and 37 doubles.
+//!
+//! Orientation x y z w, its covariance 3×3, angular velocity x y z, covariance, linear acceleration
+//! x y z, covariance. A first covariance element of −1 says that the quantity is not given.
+
+use super::cdr::{ENCAPSULATION, Refusal, Stamped};
+
+/// Text of the definition with all that it includes.
+pub const DEFINITION: &str = include_str!("sensor_msgs_msg_Imu.txt");
+
+/// Bytes of 37 doubles.
+const BODY: usize = 37 * 8;
+/// Offsets in the body.
+const ORIENTATION_W: usize = 24;
+const ORIENTATION_COVARIANCE: usize = 32;
+const RATE: usize = 104;
+const RATE_COVARIANCE: usize = 128;
+const FORCE: usize = 200;
+const FORCE_COVARIANCE: usize = 224;
+
+/// What is wanted of a message.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImuMessage {
+    /// Stamp of the header, nanoseconds.
+    pub stamp_ns: i64,
+    /// Angular rate, rad/s, where given.
+    pub rate: Option<[f64; 3]>,
+    /// Specific force, m/s², where given.
+    pub force: Option<[f64; 3]>,
+}
+
+impl ImuMessage {
+    /// Reads a message.
+    #[inline]
+    pub fn parse(bytes: &[u8]) -> Result<Self, Refusal> {
+        let stamped = Stamped::parse(bytes)?;
+        let body = stamped.doubles::<BODY>()?;
+        let given = |value: usize, covariance: usize| {
+            (body.get(covariance) != -1.0).then(|| body.vector(value))
+        };
+        Ok(Self {
+            stamp_ns: stamped.stamp_ns,
+            rate: given(RATE, RATE_COVARIANCE),
+            force: given(FORCE, FORCE_COVARIANCE),
+        })
+    }
+}
+
+/// A message in its wire form, of which only numbers change from one to the next.
+#[derive(Clone, Debug)]
+pub struct Template {
+    bytes: Vec<u8>,
+    body: usize,
+}
+
+impl Template {
+    /// A message of this frame, little-endian, without orientation.
+    pub fn new(frame_id: &str) -> Self {
+        let mut bytes = vec![0, 1, 0, 0];
+        bytes.extend_from_slice(&[0; 8]);
+        bytes.extend_from_slice(&(frame_id.len() as u32 + 1).to_le_bytes());
+        bytes.extend_from_slice(frame_id.as_bytes());
+        bytes.push(0);
+        let body = (bytes.len() - ENCAPSULATION).next_multiple_of(8) + ENCAPSULATION;
+        bytes.resize(body + BODY, 0);
+        let mut template = Self { bytes, body };
+        template.put(ORIENTATION_W, 1.0);
+        template.put(ORIENTATION_COVARIANCE, -1.0);
+        template
+    }
+
+    fn put(&mut self, offset: usize, value: f64) {
+        let at = self.body + offset;
+        if let Some(bytes) = self.bytes.get_mut(at..at + 8) {
+            bytes.copy_from_slice(&value.to_le_bytes());
+        }
+    }
+
+    fn put_sensor(&mut self, value: Option<[f64; 3]>, at: usize, covariance: usize) {
+        let given = value.is_some();
+        for (axis, v) in value.unwrap_or_default().into_iter().enumerate() {
+            self.put(at + 8 * axis, v);
+        }
+        self.put(covariance, if given { 0.0 } else { -1.0 });
+    }
+
+    /// The wire form of a message with this stamp: seconds and nanoseconds.
+    pub fn fill(
+        &mut self,
+        (sec, nanosec): (i32, u32),
+        rate: Option<[f64; 3]>,
+        force: Option<[f64; 3]>,
+    ) -> &[u8] {
+        if let Some(start) = self.bytes.first_chunk_mut::<12>() {
+            start[4..8].copy_from_slice(&sec.to_le_bytes());
+            start[8..].copy_from_slice(&nanosec.to_le_bytes());
+        }
+        self.put_sensor(rate, RATE, RATE_COVARIANCE);
+        self.put_sensor(force, FORCE, FORCE_COVARIANCE);
+        &self.bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_are_read_back() {
+        let mut template = Template::new("imu");
+        for (rate, force) in [
+            (Some([1.0, -2.0, 1e-300]), Some([0.0, -0.0, 9.81])),
+            (Some([1.0, 2.0, 3.0]), None),
+            (None, Some([4.0, 5.0, 6.0])),
+        ] {
+            let bytes = template.fill((1_700_000_000, 999_999_999), rate, force);
+            // 4 of encapsulation, 12 of header, "imu" and its NUL, 37 doubles.
+            assert_eq!(bytes.len(), 4 + 16 + 37 * 8);
+            let stamp_ns = 1_700_000_000_999_999_999;
+            assert_eq!(ImuMessage::parse(bytes), Ok(ImuMessage { stamp_ns, rate, force }));
+        }
+    }
+
+    #[test]
+    fn definition_is_the_whole_text() {
+        let parts: Vec<&str> = DEFINITION.lines().filter_map(|l| l.strip_prefix("MSG: ")).collect();
+        let all = ["std_msgs/Header", "builtin_interfaces/Time", "geometry_msgs/Quaternion"];
+        assert_eq!(parts, [&all[..], &["geometry_msgs/Vector3"]].concat());
+        assert!(!DEFINITION.contains('\r') && DEFINITION.ends_with('\n'));
+    }
+}
