@@ -44,7 +44,7 @@ impl Chunk {
     }
 
     /// Whether its records are as they were written, as far as can be known.
-    pub fn is_sound(self) -> bool {
+    pub fn checks_out(self) -> bool {
         self.sum.is_none_or(|(sum, hasher)| hasher.finalize() == sum)
     }
 }

@@ -387,7 +387,7 @@ impl McapReader {
             }
         }
         let (start, next) = (chunk.start, chunk.next);
-        if !chunk.is_sound() {
+        if !chunk.checks_out() {
             self.warn(format!(
                 "is damaged in the chunk at byte {start}, whose checksum is wrong: its samples are \
                  used, and some may be false"

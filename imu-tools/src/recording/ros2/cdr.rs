@@ -95,7 +95,7 @@ mod tests {
 
     /// A message with this frame and two doubles.
     fn message(representation: [u8; 2], frame: &str) -> Vec<u8> {
-        let big = representation[1] % 2 == 0;
+        let big = representation[1] & 1 == 0;
         let alignment = if representation[1] < 6 { 8 } else { 4 };
         let word = |v: u32| if big { v.to_be_bytes() } else { v.to_le_bytes() };
         let mut fields = [word(5), word(6), word(frame.len() as u32 + 1)].concat();
