@@ -5,3 +5,4 @@ pub mod command;
 pub mod mcaps;
 pub mod monte_carlo;
 pub mod recordings;
+pub mod ulogs;

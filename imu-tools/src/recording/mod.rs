@@ -40,6 +40,7 @@ pub mod mcap;
 mod ros2;
 pub mod timeline;
 mod topics;
+pub mod ulog;
 mod units;
 mod unpack;
 
@@ -244,9 +245,14 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     {
         return Ok(Box::new(mcap::McapReader::open(input, options)?));
     }
+    if start.starts_with(ulog::MAGIC)
+        || path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ulg"))
+    {
+        return Ok(Box::new(ulog::UlogReader::open(input, options)?));
+    }
     if start.contains(&0) {
         return Err(Error::data(format!(
-            "{} is neither a ROS 1 bag, an MCAP file nor a table of numbers in text",
+            "{} is neither a ROS 1 bag, an MCAP file, a PX4 ULog nor a table of numbers in text",
             path.display()
         )));
     }
