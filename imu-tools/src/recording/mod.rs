@@ -88,6 +88,12 @@ pub struct Temperature {
 }
 
 impl Block {
+    /// Whether nothing is in it.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.gyroscope.is_empty() && self.accelerometer.is_empty() && self.temperature.is_empty()
+    }
+
     /// Empties all lists and keeps their memory.
     pub fn clear(&mut self) {
         self.gyroscope.clear();

@@ -1,4 +1,4 @@
-//! ROS 1 bags, format 2.0, uncompressed: our own reader and writer.
+//! ROS 1 bags, format 2.0: our own reader and writer.
 //!
 //! A bag is a line of text and then records: a header of `name=value` fields and data, both
 //! prefixed by their length, little-endian. Messages (op 2) lie in chunks (op 5) together with the
@@ -6,12 +6,21 @@
 //! (op 3) at the front points to the list of connections and chunks (op 6) at the end.
 //!
 //! Reading needs no index: records are taken as they come, in a pipe as in a file, and a bag that
-//! was cut off gives all messages before the cut.
+//! was cut off gives all messages before the cut. Chunks may be compressed by bz2 or LZ4. After
+//! damage reading goes on with the next record. Everything lost is told.
 
+mod account;
+mod chunk;
+mod connection;
+mod damage;
 mod imu_message;
+mod lz4;
 mod reader;
 mod record;
 mod repeat;
+mod samples;
+mod temperature_message;
+mod unpack;
 mod writer;
 
 pub use reader::BagReader;

@@ -1,46 +1,71 @@
 //! Reading a bag front to back, in a file or a pipe.
+//!
+//! Records are taken as they come. What cannot be read is stepped over to the next bytes that have
+//! the form of a record, and told.
 
-use super::MAGIC;
-use super::imu_message::{ImuMessage, MD5SUM, TYPE_NAME};
-use super::op;
+use super::account::Account;
+use super::chunk::{Bytes, Left};
+use super::connection;
+use super::damage::{TAIL, next_record};
 use super::record::{Header, prefixed};
 use super::repeat::Repeat;
+use super::samples::{Samples, has_room};
+use super::unpack::Compression;
+use super::{MAGIC, op};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
-use crate::recording::topics::{Connection, Holds, Role, Topics};
-use crate::recording::{
-    BLOCK_SAMPLES, Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Source, Stream,
-};
+use crate::recording::topics::Topics;
+use crate::recording::{Block, Note, ReadOptions, Source, Stream};
+
+/// Headers have less than 100 bytes, or a little more than their topic's name.
+const LARGEST_HEADER: usize = 64 * 1024;
+
+/// Looked through at once for the next record after damage.
+const SCAN: usize = 64 * 1024;
+
+/// Damage is told so often, at most.
+const TOLD: u32 = 20;
 
 /// A bag being read.
 pub struct BagReader {
-    input: Input,
+    bytes: Bytes,
     topics: Topics,
-    bag_time: bool,
-    /// Factors to SI units: 1 unless the user says that the bag does not keep to them.
-    rate: f64,
-    force: f64,
-    /// Where the chunk ends in which we are.
-    chunk_end: u64,
-    /// Where the bag says that its index is; 0 when it was never closed.
-    index_pos: u64,
+    samples: Samples,
+    account: Account,
     /// The list of connections was read, so that no other topic will turn up.
     listed: bool,
     ended: bool,
     repeat: Option<Repeat>,
-    taken: Taken,
+    /// Messages of connections that were not described.
     unknown: u64,
     notes: Vec<Note>,
+    /// Warnings so far, those that were not told among them.
+    warnings: u32,
+}
+
+/// A record's lengths, and what its header says of those that come often.
+#[derive(Clone, Copy)]
+struct Record {
+    header: usize,
+    data: usize,
+    op: u8,
+    conn: Option<u32>,
+    time: (u32, u32),
+}
+
+impl Record {
+    fn len(&self) -> u64 {
+        (8 + self.header + self.data) as u64
+    }
 }
 
 /// What the next bytes hold.
 enum Next {
-    /// A record: lengths of header and data, and what its header says.
-    Record { header: usize, data: usize, op: u8, conn: Option<u32>, time: (u32, u32) },
-    /// Nothing: the file is over.
+    Record(Record),
+    /// Nothing: the chunk or the file is over.
     End,
-    /// A piece of a record: the file was cut off here.
-    Cut,
+    /// The beginning of a record, and then the chunk or the file is over.
+    Piece,
     /// Something that is no record.
     Damage,
 }
@@ -49,7 +74,7 @@ impl BagReader {
     /// Starts to read: finds the topic, as far ahead as is needed for that.
     ///
     /// # Errors
-    /// When this is no bag, is compressed, or has not exactly one topic that fits.
+    /// When this is no bag, is encrypted, or has no topic that fits, or several.
     pub fn open(mut input: Input, options: &ReadOptions) -> Result<Self, Error> {
         if options.columns.is_some() || options.time_unit.is_some() {
             return Err(Error::usage(format!(
@@ -67,93 +92,100 @@ impl BagReader {
         }
         input.consume(MAGIC.len());
         let mut bag = Self {
-            input,
+            bytes: Bytes::new(input),
             topics: Topics::new(options),
-            bag_time: options.bag_time,
-            rate: options.gyro_unit.map_or(1.0, RateUnit::to_rad_s),
-            force: options.accel_unit.map_or(1.0, ForceUnit::to_m_s2),
-            chunk_end: 0,
-            index_pos: 0,
+            samples: Samples::new(options),
+            account: Account::default(),
             listed: false,
             ended: false,
             repeat: None,
-            taken: Taken::default(),
             unknown: 0,
             notes: Vec::new(),
+            warnings: 0,
         };
         bag.bag_header()?;
         bag.list()?;
-        bag.topics.choose(bag.input.path())?;
+        bag.topics.choose(bag.bytes.input().path())?;
         let mut ahead = Block::default();
         while !bag.listed && !bag.topics.any() && bag.record(&mut ahead)? {}
         if !bag.topics.any() || (bag.listed && !bag.topics.complete()) {
-            return Err(bag.topics.not_found(bag.input.path()));
+            return Err(bag.topics.not_found(bag.bytes.input().path()));
         }
         Ok(bag)
     }
 
-    /// Takes where the index is from the first record; leaves anything else to the main loop.
+    /// Takes what the first record says of the bag; leaves anything else to the main loop.
     fn bag_header(&mut self) -> Result<(), Error> {
-        if let Next::Record { header, data, op: op::BAG_HEADER, .. } = self.next()? {
-            let fields = self.header(header).unwrap_or_default();
-            self.index_pos = fields.index_pos.unwrap_or(0);
-            self.ended = !self.input.skip((8 + header + data) as u64)?;
-            self.cut_off_if(self.ended);
+        let Next::Record(record @ Record { op: op::BAG_HEADER, .. }) = self.next()? else {
+            return Ok(());
+        };
+        let header = self.header(&record).unwrap_or_default();
+        let encryptor = header.encryptor.unwrap_or_default();
+        if !encryptor.is_empty() && encryptor != b"rosbag/NoEncryptor" {
+            return Err(Error::data(format!(
+                "{} is encrypted by {}: decrypt it with the key that it was recorded with, and \
+                 read the result",
+                self.bytes.input().path().display(),
+                String::from_utf8_lossy(encryptor)
+            )));
         }
+        self.account = Account::of(&header);
+        self.step_over(&record)?;
         Ok(())
     }
 
     /// Reads all connections from the end of the file, where one can go there and back.
     fn list(&mut self) -> Result<(), Error> {
-        let back = self.input.offset();
-        if self.index_pos < back || !self.input.seek(self.index_pos)? {
+        let back = self.bytes.offset();
+        let index_pos = self.account.index_pos;
+        if self.ended || index_pos < back || !self.bytes.input_mut().seek(index_pos)? {
             return Ok(());
         }
         let mut found = false;
         self.listed = loop {
             match self.next()? {
-                Next::Record { header, data, op: op::CONNECTION, conn, .. } => {
-                    self.connection(header, data, conn)?;
+                Next::Record(record @ Record { op: op::CONNECTION, .. }) => {
+                    self.connection(&record)?;
                     found = true;
-                    if !self.input.skip((8 + header + data) as u64)? {
+                    if !self.bytes.skip(record.len())? {
                         break false;
                     }
                 }
-                Next::Record { op: op::CHUNK_INFO, .. } => break true,
+                Next::Record(Record { op: op::CHUNK_INFO, .. }) => break true,
                 Next::End => break found,
                 _ => break false,
             }
         };
-        self.input.seek(back)?;
+        self.bytes.input_mut().seek(back)?;
         Ok(())
     }
 
     /// What comes next; nothing is consumed.
     #[inline]
     fn next(&mut self) -> Result<Next, Error> {
-        if !self.input.fill(4)? {
-            return Ok(if self.input.at_hand().is_empty() { Next::End } else { Next::Cut });
+        if !self.bytes.fill(4)? {
+            return Ok(if self.bytes.at_hand().is_empty() { Next::End } else { Next::Piece });
         }
-        let header = self.input.at_hand().first_chunk().map_or(0, |b| u32::from_le_bytes(*b));
+        let header = self.bytes.at_hand().first_chunk().map_or(0, |b| u32::from_le_bytes(*b));
         let header = header as usize;
-        if header > LARGEST_PIECE - 8 {
+        if header > LARGEST_HEADER {
             return Ok(Next::Damage);
         }
-        if !self.input.fill(8 + header)? {
-            return Ok(Next::Cut);
+        if !self.bytes.fill(8 + header)? {
+            return Ok(Next::Piece);
         }
-        let Some((bytes, rest)) = prefixed(self.input.at_hand()) else { return Ok(Next::Cut) };
-        let Some(data) = rest.first_chunk() else { return Ok(Next::Cut) };
+        let Some((bytes, rest)) = prefixed(self.bytes.at_hand()) else { return Ok(Next::Piece) };
+        let Some(data) = rest.first_chunk() else { return Ok(Next::Piece) };
         let Some(Header { op: Some(op), conn, time, .. }) = Header::parse(bytes) else {
             return Ok(Next::Damage);
         };
         let data = u32::from_le_bytes(*data) as usize;
-        Ok(Next::Record { header, data, op, conn, time: time.unwrap_or_default() })
+        Ok(Next::Record(Record { header, data, op, conn, time: time.unwrap_or_default() }))
     }
 
-    /// All fields of the header at hand.
-    fn header(&self, len: usize) -> Option<Header<'_>> {
-        Header::parse(self.input.at_hand().get(4..4 + len)?)
+    /// All fields of the header of the record at hand.
+    fn header(&self, record: &Record) -> Option<Header<'_>> {
+        Header::parse(self.bytes.at_hand().get(4..4 + record.header)?)
     }
 
     /// Takes one record; `false` at the end.
@@ -162,257 +194,226 @@ impl BagReader {
         if self.ended {
             return Ok(false);
         }
-        let (header, data, op, conn, time) = match self.next()? {
-            Next::Record { header, data, op, conn, time } => (header, data, op, conn, time),
-            Next::Damage => return self.damaged(),
-            Next::End => return Ok(self.at_end()),
-            Next::Cut => return Ok(self.cut_off_if(true)),
-        };
-        let len = (8 + header + data) as u64;
-        let here = self.input.offset();
-        if here < self.chunk_end && here + len > self.chunk_end {
-            return self.damaged();
+        match self.next()? {
+            Next::Record(record) => self.take(&record, block),
+            Next::End if self.bytes.in_chunk() => self.leave_chunk(),
+            Next::End => Ok(self.end(false)),
+            Next::Piece => self.damaged(true),
+            Next::Damage => self.damaged(false),
         }
-        match (op, conn) {
+    }
+
+    #[inline]
+    fn take(&mut self, record: &Record, block: &mut Block) -> Result<bool, Error> {
+        let len = record.len();
+        if record.op != op::CHUNK && self.bytes.room().is_some_and(|room| len > room) {
+            return self.damaged(true);
+        }
+        match (record.op, record.conn) {
             (op::MESSAGE, Some(conn)) => {
-                self.topics.count(conn);
                 if let Some(role) = self.topics.role(conn) {
+                    // No message that we know is so large.
                     if len > LARGEST_PIECE as u64 {
-                        self.taken.malformed += 1;
-                    } else if self.input.fill(len as usize)? {
-                        let record = self.input.at_hand().get(..len as usize).unwrap_or_default();
-                        let payload = record.get(8 + header..).unwrap_or_default();
-                        self.taken.message(payload, time, self.bag_time, role, block);
-                        self.repeat = Repeat::of(record, header, role);
-                        self.input.consume(len as usize);
-                        return Ok(true);
-                    } else {
-                        return Ok(self.cut_off_if(true));
+                        return self.damaged(false);
                     }
-                } else if !self.topics.knows(conn) {
-                    self.unknown += 1;
+                    if !self.bytes.fill(len as usize)? {
+                        return self.damaged(true);
+                    }
+                    let bytes = self.bytes.at_hand().get(..len as usize).unwrap_or_default();
+                    let payload = bytes.get(8 + record.header..).unwrap_or_default();
+                    self.samples.message(payload, record.time, role, block);
+                    self.repeat = Repeat::of(bytes, record.header, role);
+                    self.bytes.consume(len as usize);
+                    self.topics.count(conn);
+                    return Ok(true);
+                }
+                self.topics.count(conn);
+                self.unknown += u64::from(!self.topics.knows(conn));
+            }
+            (op::CHUNK, _) => return self.enter_chunk(record),
+            (op::CONNECTION, _) => {
+                if self.connection(record)? && !self.listed {
+                    self.topics.choose(self.bytes.input().path())?;
                 }
             }
-            (op::CHUNK, _) => {
-                self.chunk(header)?;
-                self.input.consume(8 + header);
-                self.chunk_end = here + len;
-                return Ok(true);
-            }
-            (op::CONNECTION, conn) => {
-                self.connection(header, data, conn)?;
-                if !self.listed {
-                    self.topics.choose(self.input.path())?;
-                }
-            }
-            (op::BAG_HEADER | op::INDEX | op::CHUNK_INFO, _) => {}
-            _ => return self.damaged(),
+            (op::INDEX, _) => self.account.indexes = self.account.indexes.saturating_add(1),
+            (op::CHUNK_INFO, _) => self.account.infos = self.account.infos.saturating_add(1),
+            (op::BAG_HEADER, _) => {}
+            _ => return self.damaged(false),
         }
-        let whole = self.input.skip(len)?;
-        Ok(self.cut_off_if(!whole))
+        self.step_over(record)
     }
 
     /// Takes the records at hand that repeat the shape of the last message.
     fn repeated(&mut self, block: &mut Block) {
         let Some(repeat) = self.repeat else { return };
-        let mut bytes = self.input.at_hand();
-        let here = self.input.offset();
-        if here < self.chunk_end {
-            let inside = bytes.len().min((self.chunk_end - here) as usize);
-            bytes = bytes.get(..inside).unwrap_or_default();
-        }
+        let mut bytes = self.bytes.at_hand();
         let mut used = 0;
         while has_room(block)
             && let Some((time, payload)) = repeat.next(bytes)
         {
-            self.taken.message(payload, time, self.bag_time, repeat.role, block);
+            self.samples.message(payload, time, repeat.role, block);
             self.topics.count(repeat.role.number);
             used += repeat.len;
             bytes = bytes.get(repeat.len..).unwrap_or_default();
         }
-        self.input.consume(used);
+        self.bytes.consume(used);
+    }
+
+    /// Takes note of a connection; whether it is new. A description that is too large or cut off
+    /// says nothing.
+    fn connection(&mut self, record: &Record) -> Result<bool, Error> {
+        let Some(number) = record.conn else { return Ok(false) };
+        let start = 8 + record.header;
+        if !self.bytes.fill(start + record.data)? {
+            return Ok(false);
+        }
+        let bytes = self.bytes.at_hand();
+        let header = bytes.get(4..4 + record.header).unwrap_or_default();
+        let data = bytes.get(start..start + record.data).unwrap_or_default();
+        let described = connection::described(number, header, data);
+        Ok(described.is_some_and(|connection| self.topics.add(connection)))
     }
 
     /// Enters a chunk: its records come next.
-    fn chunk(&mut self, header: usize) -> Result<(), Error> {
-        let compression = self.header(header).and_then(|h| h.compression).unwrap_or(b"none");
-        if compression == b"none" {
-            return Ok(());
+    fn enter_chunk(&mut self, record: &Record) -> Result<bool, Error> {
+        if self.bytes.unpacked() {
+            return self.damaged(false); // there are no chunks in chunks
         }
-        let path = self.input.path().display();
-        Err(Error::data(format!(
-            "{path} is compressed ({}), which is not supported yet: decompress it with \
-             `rosbag decompress` and read the result",
-            String::from_utf8_lossy(compression)
-        )))
+        let start = self.bytes.offset();
+        let fields = self.header(record).unwrap_or_default();
+        let size = fields.size.unwrap_or(0);
+        let name = fields.compression.unwrap_or(b"none");
+        let (plain, compression) = (name == b"none", Compression::of(name));
+        if !plain && compression.is_none() {
+            let name = String::from_utf8_lossy(name).into_owned();
+            self.warn(format!(
+                "has a chunk at byte {start} whose compression ({name}) is none that is known"
+            ));
+            return self.damaged(false);
+        }
+        if self.bytes.in_chunk() {
+            self.warn(format!(
+                "has a chunk at byte {start}, before the end of the one that precedes it: one of \
+                 them is damaged"
+            ));
+            self.bytes.leave()?;
+        }
+        self.account.chunks = self.account.chunks.saturating_add(1);
+        self.bytes.consume(8 + record.header);
+        let len = record.data as u64;
+        match compression {
+            None => self.bytes.enter(start, len),
+            Some(how) if len > 0 => self.bytes.enter_packed(start, how, Some(len), size),
+            // What a recorder was writing when it died: it fills in the length when it is done.
+            Some(how) => {
+                self.bytes.fill(4)?;
+                if how.begins(self.bytes.at_hand()) {
+                    self.bytes.enter_packed(start, how, None, size);
+                }
+            }
+        }
+        Ok(true)
     }
 
-    /// Takes note of a connection; a description that is too large or cut off says nothing.
-    fn connection(&mut self, header: usize, data: usize, conn: Option<u32>) -> Result<(), Error> {
-        let Some(conn) = conn else { return Ok(()) };
-        if !self.input.fill(8 + header + data)? {
-            return Ok(());
+    /// Leaves a chunk of which all was read that can be.
+    fn leave_chunk(&mut self) -> Result<bool, Error> {
+        let (start, left) = self.bytes.leave()?;
+        let chunk = format!("has a chunk at byte {start}");
+        match left {
+            Left::Whole => {}
+            Left::Cut => return Ok(self.end(true)),
+            Left::TooLong(more) => {
+                self.warn(format!("{chunk} that ends {more} bytes before it should"));
+            }
+            Left::OtherSize { unpacked, says } => {
+                self.warn(format!("{chunk} that unpacks to {unpacked} bytes where it says {says}"));
+            }
+            Left::WrongSum => self.warn(format!(
+                "{chunk} whose checksum is wrong: values in it may be wrong, and are used"
+            )),
+            Left::Damaged { unpacked } => self.warn(format!(
+                "{chunk} that is damaged: {unpacked} bytes could be unpacked, its rest is lost"
+            )),
         }
-        let bytes = self.input.at_hand();
-        let fields = bytes.get(4..4 + header).and_then(Header::parse);
-        let described = bytes.get(8 + header..8 + header + data).and_then(Header::parse);
-        if let (Some(fields), Some(described)) = (fields, described) {
-            let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-            let (Some(topic), Some(type_name)) =
-                (fields.topic.or(described.topic), described.type_name)
-            else {
-                return Ok(());
-            };
-            self.topics.add(Connection {
-                number: conn,
-                topic: text(topic),
-                type_name: text(type_name),
-                holds: holds(type_name, described.md5sum.unwrap_or_default()),
-            });
-        }
-        Ok(())
+        Ok(true)
     }
 
-    /// Steps over what cannot be read: to the end of its chunk, or, outside of one, to the end.
+    /// Steps over a record; whether there is more to read.
+    fn step_over(&mut self, record: &Record) -> Result<bool, Error> {
+        let (at, from) = (self.bytes.at(), self.bytes.offset());
+        if self.bytes.skip(record.len())? {
+            return Ok(true);
+        }
+        Ok(self.over(&at, from, true))
+    }
+
+    /// Steps over what cannot be read, to the next record; whether there is more to read.
+    /// `piece`: it can be a record whose end is missing.
     #[cold]
-    fn damaged(&mut self) -> Result<bool, Error> {
-        let here = self.input.offset();
-        if here < self.chunk_end {
-            let lost = self.chunk_end - here;
-            self.warn(format!("is damaged at byte {here}: {lost} bytes are lost"));
-            let whole = self.input.skip(lost)?;
-            return Ok(self.cut_off_if(!whole));
+    fn damaged(&mut self, piece: bool) -> Result<bool, Error> {
+        let (at, from) = (self.bytes.at(), self.bytes.offset());
+        self.bytes.consume(1);
+        loop {
+            let more = self.bytes.fill(SCAN)?;
+            let bytes = self.bytes.at_hand();
+            if let Some(clear) = next_record(bytes) {
+                self.bytes.consume(clear);
+                let lost = self.bytes.offset() - from;
+                self.warn(format!("is damaged at {at}: {lost} bytes are lost"));
+                return Ok(true);
+            }
+            let clear = if more { bytes.len().saturating_sub(TAIL) } else { bytes.len() };
+            self.bytes.consume(clear);
+            if !more {
+                return Ok(self.over(&at, from, piece));
+            }
         }
-        self.warn(format!("is damaged at byte {here}: the rest is lost"));
-        self.ended = true;
-        Ok(false)
     }
 
-    /// Says what is lost of a bag that was cut off; whether there is more to read.
-    fn cut_off_if(&mut self, cut: bool) -> bool {
-        if cut {
-            self.ended = true;
-            let size = self.input.offset() + self.input.at_hand().len() as u64;
-            let lost = self.index_pos.saturating_sub(size);
-            self.warn(if self.index_pos == 0 {
-                "was not closed and ends in the middle of a record: what comes before is used"
-                    .into()
-            } else if lost > 0 {
-                format!("is cut off: its last {lost} bytes of data, or more, are lost")
-            } else {
-                "is cut off in its index: no message is lost".into()
-            });
+    /// Says that nothing more was found in the chunk or file, unless that will be said when it is
+    /// left; whether there is more to read.
+    fn over(&mut self, at: &str, from: u64, piece: bool) -> bool {
+        let lost = self.bytes.offset() - from;
+        let in_chunk = self.bytes.in_chunk();
+        if !piece || !self.bytes.cut() {
+            let of = if in_chunk { "the rest of its chunk" } else { "the rest" };
+            self.warn(format!("is damaged at {at}: {of}, {lost} bytes, is lost"));
+        } else if !in_chunk {
+            return self.end(true);
         }
-        !cut
+        true
     }
 
-    /// Says what is lost of a bag that ends with a whole record.
+    /// Says, once, what the bag lacks and what was strange in it. There is nothing more to read.
     #[cold]
-    fn at_end(&mut self) -> bool {
+    fn end(&mut self, cut: bool) -> bool {
         self.ended = true;
-        let size = self.input.offset();
-        if self.index_pos == 0 {
-            self.warn("was not closed: what was recorded last may be missing".into());
-        } else if size < self.index_pos {
-            let lost = self.index_pos - size;
-            self.warn(format!("is cut off: its last {lost} bytes of data, or more, are lost"));
+        let unknown = self.unknown;
+        let untold = self.warnings.saturating_sub(TOLD);
+        self.warnings = 0;
+        if untold > 0 {
+            self.warn(format!("is damaged in {untold} more places"));
+        }
+        if let Some(closing) = self.account.closing(self.bytes.offset(), cut) {
+            self.warn(closing);
+        }
+        for strange in self.samples.strange() {
+            self.warn(strange);
+        }
+        if unknown > 0 {
+            self.warn(format!("has {unknown} messages of topics that it does not name"));
         }
         false
     }
 
     fn warn(&mut self, what: String) {
-        /// Damage is told so often, at most.
-        const TOLD: usize = 20;
-        if self.notes.len() < TOLD {
-            self.notes.push(Note::Warning(format!("{} {what}", self.input.path().display())));
+        self.warnings = self.warnings.saturating_add(1);
+        if self.warnings <= TOLD {
+            let path = self.bytes.input().path().display();
+            self.notes.push(Note::Warning(format!("{path} {what}")));
         }
     }
-
-    /// Says, once, what was strange about the messages.
-    fn warn_of_messages(&mut self) {
-        let Taken { messages, unstamped, malformed } = std::mem::take(&mut self.taken);
-        let unknown = std::mem::take(&mut self.unknown);
-        if malformed > 0 {
-            self.warn(format!("has {malformed} messages that are no {TYPE_NAME}"));
-        }
-        if unknown > 0 {
-            self.warn(format!("has {unknown} messages of topics that it does not name"));
-        }
-        if messages > 1 && unstamped == messages && !self.bag_time {
-            self.warn("has no stamps in its messages: read it with --bag-time".into());
-        }
-    }
-}
-
-/// What the messages of a type are to us: its name and fingerprint must be the ones that we know.
-fn holds(type_name: &[u8], md5sum: &[u8]) -> Holds {
-    if type_name != TYPE_NAME.as_bytes() {
-        Holds::Other
-    } else if [MD5SUM.as_bytes(), b"*", b""].contains(&md5sum) {
-        Holds::Imu
-    } else {
-        Holds::Unreadable(format!(
-            "holds an unknown layout of {TYPE_NAME} (md5sum {}, where {MD5SUM} is expected)",
-            String::from_utf8_lossy(md5sum)
-        ))
-    }
-}
-
-/// What was taken so far.
-#[derive(Clone, Copy, Debug, Default)]
-struct Taken {
-    messages: u64,
-    /// Messages whose stamp is 0.
-    unstamped: u64,
-    /// Messages that cannot be read.
-    malformed: u64,
-}
-
-impl Taken {
-    /// Takes one message, recorded at `time`.
-    #[inline]
-    fn message(
-        &mut self,
-        payload: &[u8],
-        time: (u32, u32),
-        bag_time: bool,
-        role: Role,
-        to: &mut Block,
-    ) {
-        let Some(message) = ImuMessage::parse(payload) else {
-            self.malformed += 1;
-            return;
-        };
-        self.messages += 1;
-        self.unstamped += u64::from(message.stamp == (0, 0));
-        let (sec, nsec) = if bag_time { time } else { message.stamp };
-        let stamp_ns = i64::from(sec) * 1_000_000_000 + i64::from(nsec);
-        if let Some(value) = message.rate
-            && role.gyroscope
-        {
-            to.gyroscope.push(Sample { stamp_ns, value });
-        }
-        if let Some(value) = message.force
-            && role.accelerometer
-        {
-            to.accelerometer.push(Sample { stamp_ns, value });
-        }
-    }
-}
-
-/// Brings values to SI units.
-fn scale(samples: &mut [Sample], factor: f64) {
-    if factor != 1.0 {
-        for value in samples.iter_mut().flat_map(|sample| &mut sample.value) {
-            *value *= factor;
-        }
-    }
-}
-
-/// Whether another message fits.
-#[inline]
-fn has_room(block: &Block) -> bool {
-    block.gyroscope.len() < BLOCK_SAMPLES && block.accelerometer.len() < BLOCK_SAMPLES
 }
 
 impl Source for BagReader {
@@ -425,15 +426,13 @@ impl Source for BagReader {
             }
             if !self.record(block)? {
                 if !self.topics.complete() {
-                    return Err(self.topics.not_found(self.input.path()));
+                    return Err(self.topics.not_found(self.bytes.input().path()));
                 }
-                self.warn_of_messages();
                 break;
             }
         }
-        scale(&mut block.gyroscope, self.rate);
-        scale(&mut block.accelerometer, self.force);
-        Ok(!block.gyroscope.is_empty() || !block.accelerometer.is_empty())
+        self.samples.scale(block);
+        Ok(!block.is_empty())
     }
 
     fn streams(&self) -> Vec<Stream> {
@@ -449,16 +448,16 @@ impl Source for BagReader {
     }
 
     fn take_notes(&mut self) -> Vec<Note> {
-        let mut notes = std::mem::take(&mut self.notes);
-        notes.append(&mut self.topics.take_notes());
+        let mut notes = self.topics.take_notes();
+        notes.append(&mut self.notes);
         notes
     }
 
     fn bytes_read(&self) -> u64 {
-        self.input.offset()
+        self.bytes.input().offset()
     }
 
     fn bytes_total(&self) -> Option<u64> {
-        self.input.len()
+        self.bytes.input().len()
     }
 }

@@ -19,6 +19,14 @@ pub struct Header<'a> {
     pub md5sum: Option<&'a [u8]>,
     /// Where the bag's list of connections and chunks starts.
     pub index_pos: Option<u64>,
+    /// How many chunks the bag has.
+    pub chunk_count: Option<u32>,
+    /// What encrypted the bag; empty for nothing.
+    pub encryptor: Option<&'a [u8]>,
+    /// Bytes that a chunk unpacks to.
+    pub size: Option<u32>,
+    /// Entries of an index or a chunk's description.
+    pub count: Option<u32>,
 }
 
 impl<'a> Header<'a> {
@@ -51,13 +59,18 @@ impl<'a> Header<'a> {
     fn rare_field(&mut self, field: &'a [u8]) -> Option<()> {
         let equals = field.iter().position(|&b| b == b'=')?;
         let (name, value) = (field.get(..equals)?, field.get(equals + 1..)?);
+        let word = |value: &[u8]| value.try_into().ok().map(u32::from_le_bytes);
         match name {
-            b"op" => return None,
+            b"op" | b"conn" | b"time" => return None,
             b"compression" => self.compression = Some(value),
             b"topic" => self.topic = Some(value),
             b"type" => self.type_name = Some(value),
             b"md5sum" => self.md5sum = Some(value),
             b"index_pos" => self.index_pos = Some(u64::from_le_bytes(value.try_into().ok()?)),
+            b"chunk_count" => self.chunk_count = Some(word(value)?),
+            b"encryptor" => self.encryptor = Some(value),
+            b"size" => self.size = Some(word(value)?),
+            b"count" => self.count = Some(word(value)?),
             _ => {}
         }
         Some(())

@@ -1,0 +1,110 @@
+//! From messages to samples, in SI units.
+
+use super::imu_message::{ImuMessage, TYPE_NAME};
+use super::temperature_message::TemperatureMessage;
+use crate::recording::topics::Role;
+use crate::recording::{
+    BLOCK_SAMPLES, Block, ForceUnit, RateUnit, ReadOptions, Sample, Temperature,
+};
+
+/// Takes messages, and counts what is strange about them.
+#[derive(Clone, Debug)]
+pub struct Samples {
+    bag_time: bool,
+    /// Factors to SI units: 1 unless the user says that the bag does not keep to them.
+    rate: f64,
+    force: f64,
+    messages: u64,
+    /// Messages whose stamp is 0.
+    unstamped: u64,
+    /// Messages that cannot be read.
+    malformed: u64,
+}
+
+fn nanoseconds((sec, nsec): (u32, u32)) -> i64 {
+    i64::from(sec) * 1_000_000_000 + i64::from(nsec)
+}
+
+impl Samples {
+    /// Stamps and units as the user wants them.
+    pub fn new(options: &ReadOptions) -> Self {
+        Self {
+            bag_time: options.bag_time,
+            rate: options.gyro_unit.map_or(1.0, RateUnit::to_rad_s),
+            force: options.accel_unit.map_or(1.0, ForceUnit::to_m_s2),
+            messages: 0,
+            unstamped: 0,
+            malformed: 0,
+        }
+    }
+
+    /// Takes one message, recorded at `time`.
+    #[inline]
+    pub fn message(&mut self, payload: &[u8], time: (u32, u32), role: Role, to: &mut Block) {
+        if role.temperature {
+            return self.temperature(payload, time, to);
+        }
+        let Some(message) = ImuMessage::parse(payload) else {
+            self.malformed += 1;
+            return;
+        };
+        self.messages += 1;
+        self.unstamped += u64::from(message.stamp == (0, 0));
+        let stamp_ns = nanoseconds(if self.bag_time { time } else { message.stamp });
+        if let Some(value) = message.rate
+            && role.gyroscope
+        {
+            to.gyroscope.push(Sample { stamp_ns, value });
+        }
+        if let Some(value) = message.force
+            && role.accelerometer
+        {
+            to.accelerometer.push(Sample { stamp_ns, value });
+        }
+    }
+
+    fn temperature(&mut self, payload: &[u8], time: (u32, u32), to: &mut Block) {
+        let Some(message) = TemperatureMessage::parse(payload) else {
+            self.malformed += 1;
+            return;
+        };
+        let stamp_ns = nanoseconds(if self.bag_time { time } else { message.stamp });
+        to.temperature.push(Temperature { stamp_ns, celsius: message.celsius });
+    }
+
+    /// Brings the values of a block to SI units.
+    pub fn scale(&self, block: &mut Block) {
+        for (samples, factor) in
+            [(&mut block.gyroscope, self.rate), (&mut block.accelerometer, self.force)]
+        {
+            if factor != 1.0 {
+                for value in samples.iter_mut().flat_map(|sample| &mut sample.value) {
+                    *value *= factor;
+                }
+            }
+        }
+    }
+
+    /// What was strange, in words that follow the name of the bag.
+    pub fn strange(&self) -> Vec<String> {
+        let mut strange = Vec::new();
+        if self.malformed > 0 {
+            strange.push(format!(
+                "has {} messages that are no {TYPE_NAME}, although their topic says so",
+                self.malformed
+            ));
+        }
+        if self.messages > 1 && self.unstamped == self.messages && !self.bag_time {
+            strange.push("has no stamps in its messages: read it with --bag-time".into());
+        }
+        strange
+    }
+}
+
+/// Whether another message fits.
+#[inline]
+pub fn has_room(block: &Block) -> bool {
+    block.gyroscope.len() < BLOCK_SAMPLES
+        && block.accelerometer.len() < BLOCK_SAMPLES
+        && block.temperature.len() < BLOCK_SAMPLES
+}
