@@ -34,7 +34,8 @@ impl Account {
         let said = self.chunk_count.unwrap_or(chunks);
         let lost = index_pos.saturating_sub(size);
         Some(if index_pos == 0 && cut {
-            "was not closed and is cut off in the middle of a record: what comes before is used".into()
+            "was not closed and is cut off in the middle of a record: what comes before is used"
+                .into()
         } else if index_pos == 0 {
             "was not closed: what was recorded last may be missing".into()
         } else if lost > 0 && (infos == 0 || infos < said) {

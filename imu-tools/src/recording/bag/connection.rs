@@ -21,8 +21,7 @@ pub fn described(number: u32, header: &[u8], data: &[u8]) -> Option<Connection> 
 /// What the messages of a type are to us: its name and fingerprint must be the ones that we know.
 fn holds(type_name: &[u8], md5sum: &[u8]) -> Holds {
     let known = |ours: &str| [ours.as_bytes(), b"*", b""].contains(&md5sum);
-    if type_name == temperature_message::TYPE_NAME.as_bytes()
-        && known(temperature_message::MD5SUM)
+    if type_name == temperature_message::TYPE_NAME.as_bytes() && known(temperature_message::MD5SUM)
     {
         Holds::Temperature
     } else if type_name != imu_message::TYPE_NAME.as_bytes() {

@@ -130,7 +130,15 @@ impl BagReader {
             )));
         }
         self.account = Account::of(&header);
-        self.step_over(&record)?;
+        // Blanks fill it up; where there is a record in them, its length is wrong.
+        let blanks = 8 + record.header..8 + record.header + record.data;
+        let whole = self.bytes.fill(blanks.end)?;
+        let filled = self.bytes.at_hand().get(blanks).unwrap_or_default();
+        if record.data > LARGEST_HEADER || next_record(filled).is_some() {
+            self.damaged(!whole)?;
+        } else {
+            self.step_over(&record)?;
+        }
         Ok(())
     }
 
@@ -188,6 +196,12 @@ impl BagReader {
         Header::parse(self.bytes.at_hand().get(4..4 + record.header)?)
     }
 
+    /// Whether the record at hand holds as many entries of `size` bytes as it says.
+    fn counted(&self, record: &Record, size: u64) -> bool {
+        let count = self.header(record).and_then(|header| header.count);
+        count.is_none_or(|count| u64::from(count) * size == record.data as u64)
+    }
+
     /// Takes one record; `false` at the end.
     #[inline]
     fn record(&mut self, block: &mut Block) -> Result<bool, Error> {
@@ -221,8 +235,13 @@ impl BagReader {
                     }
                     let bytes = self.bytes.at_hand().get(..len as usize).unwrap_or_default();
                     let payload = bytes.get(8 + record.header..).unwrap_or_default();
-                    self.samples.message(payload, record.time, role, block);
-                    self.repeat = Repeat::of(bytes, record.header, role);
+                    if self.samples.message(payload, record.time, role, block) {
+                        self.repeat = Repeat::of(bytes, record.header, role);
+                    } else if next_record(payload).is_some() {
+                        return self.damaged(false); // its length is wrong
+                    } else {
+                        self.samples.count_malformed();
+                    }
                     self.bytes.consume(len as usize);
                     self.topics.count(conn);
                     return Ok(true);
@@ -231,6 +250,9 @@ impl BagReader {
                 self.unknown += u64::from(!self.topics.knows(conn));
             }
             (op::CHUNK, _) => return self.enter_chunk(record),
+            (op::CONNECTION, _) if record.data > LARGEST_PIECE => return self.damaged(false),
+            (op::INDEX, _) if !self.counted(record, 12) => return self.damaged(false),
+            (op::CHUNK_INFO, _) if !self.counted(record, 8) => return self.damaged(false),
             (op::CONNECTION, _) => {
                 if self.connection(record)? && !self.listed {
                     self.topics.choose(self.bytes.input().path())?;
@@ -252,7 +274,9 @@ impl BagReader {
         while has_room(block)
             && let Some((time, payload)) = repeat.next(bytes)
         {
-            self.samples.message(payload, time, repeat.role, block);
+            if !self.samples.message(payload, time, repeat.role, block) {
+                self.samples.count_malformed();
+            }
             self.topics.count(repeat.role.number);
             used += repeat.len;
             bytes = bytes.get(repeat.len..).unwrap_or_default();
@@ -271,8 +295,18 @@ impl BagReader {
         let bytes = self.bytes.at_hand();
         let header = bytes.get(4..4 + record.header).unwrap_or_default();
         let data = bytes.get(start..start + record.data).unwrap_or_default();
-        let described = connection::described(number, header, data);
-        Ok(described.is_some_and(|connection| self.topics.add(connection)))
+        let Some(connection) = connection::described(number, header, data) else {
+            return Ok(false);
+        };
+        let known = self.topics.knows(number);
+        let added = self.topics.add(connection);
+        if known && added {
+            let at = self.bytes.at();
+            self.warn(format!(
+                "has a damaged description of connection {number}: its messages before {at} are lost"
+            ));
+        }
+        Ok(added)
     }
 
     /// Enters a chunk: its records come next.

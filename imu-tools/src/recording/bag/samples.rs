@@ -1,6 +1,6 @@
 //! From messages to samples, in SI units.
 
-use super::imu_message::{ImuMessage, TYPE_NAME};
+use super::imu_message::ImuMessage;
 use super::temperature_message::TemperatureMessage;
 use crate::recording::topics::Role;
 use crate::recording::{
@@ -38,16 +38,19 @@ impl Samples {
         }
     }
 
-    /// Takes one message, recorded at `time`.
+    /// Takes one message, recorded at `time`; `false` where it is none.
     #[inline]
-    pub fn message(&mut self, payload: &[u8], time: (u32, u32), role: Role, to: &mut Block) {
+    pub fn message(
+        &mut self,
+        payload: &[u8],
+        time: (u32, u32),
+        role: Role,
+        to: &mut Block,
+    ) -> bool {
         if role.temperature {
             return self.temperature(payload, time, to);
         }
-        let Some(message) = ImuMessage::parse(payload) else {
-            self.malformed += 1;
-            return;
-        };
+        let Some(message) = ImuMessage::parse(payload) else { return false };
         self.messages += 1;
         self.unstamped += u64::from(message.stamp == (0, 0));
         let stamp_ns = nanoseconds(if self.bag_time { time } else { message.stamp });
@@ -61,15 +64,19 @@ impl Samples {
         {
             to.accelerometer.push(Sample { stamp_ns, value });
         }
+        true
     }
 
-    fn temperature(&mut self, payload: &[u8], time: (u32, u32), to: &mut Block) {
-        let Some(message) = TemperatureMessage::parse(payload) else {
-            self.malformed += 1;
-            return;
-        };
+    fn temperature(&mut self, payload: &[u8], time: (u32, u32), to: &mut Block) -> bool {
+        let Some(message) = TemperatureMessage::parse(payload) else { return false };
         let stamp_ns = nanoseconds(if self.bag_time { time } else { message.stamp });
         to.temperature.push(Temperature { stamp_ns, celsius: message.celsius });
+        true
+    }
+
+    /// Counts a message that is none.
+    pub fn count_malformed(&mut self) {
+        self.malformed += 1;
     }
 
     /// Brings the values of a block to SI units.
@@ -90,7 +97,7 @@ impl Samples {
         let mut strange = Vec::new();
         if self.malformed > 0 {
             strange.push(format!(
-                "has {} messages that are no {TYPE_NAME}, although their topic says so",
+                "has {} messages that are not of the type that their topic says",
                 self.malformed
             ));
         }

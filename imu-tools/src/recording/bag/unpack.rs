@@ -126,15 +126,7 @@ impl Unpacker {
             Compression::Bz2 => Codec::Bz2(Decompress::new(false)),
             Compression::Lz4 => Codec::Lz4(Lz4::default()),
         };
-        Self {
-            codec,
-            left: len,
-            window: Vec::new(),
-            start: 0,
-            held: 0,
-            offset: 0,
-            ending: None,
-        }
+        Self { codec, left: len, window: Vec::new(), start: 0, held: 0, offset: 0, ending: None }
     }
 
     /// The unpacked bytes at hand.

@@ -159,9 +159,19 @@ impl Topics {
         !self.gyroscope.is_empty() || !self.accelerometer.is_empty()
     }
 
-    /// Takes note of a connection; whether it is new, so that a choice is to be made.
+    /// Takes note of a connection; whether it is new, so that a choice is to be made. One that is
+    /// described again keeps its first description, unless only the second can be used: then the
+    /// first was damaged.
     pub fn add(&mut self, connection: Connection) -> bool {
-        if self.knows(connection.number) || self.connections.len() >= CONNECTIONS {
+        let known = self.connections.iter_mut().find(|known| known.number == connection.number);
+        if let Some(known) = known {
+            let better = known.holds == Holds::Other && connection.holds != Holds::Other;
+            if better {
+                *known = connection;
+            }
+            return better;
+        }
+        if self.connections.len() >= CONNECTIONS {
             return false;
         }
         self.connections.push(connection);
