@@ -23,6 +23,8 @@ struct Part {
     /// First samples of gyroscope and accelerometer, and rates where they show them.
     first: [Option<Sample>; 2],
     rates: [Option<f64>; 2],
+    /// Length of the mean specific force, m/s².
+    force: Option<f64>,
     bytes: Option<u64>,
     /// What cannot be opened again (a pipe) stays open, with its first block.
     held: Option<(Box<dyn Source>, Block)>,
@@ -71,6 +73,7 @@ impl Joined {
             }
         }
         refuse_two_rates(&parts)?;
+        refuse_two_units(&parts)?;
         parts.sort_by_key(Part::start);
         refuse_copies(&parts)?;
         let names = parts.iter().map(|part| name(&part.path)).collect();
@@ -255,10 +258,11 @@ impl Part {
         let lists = [&block.gyroscope, &block.accelerometer];
         let (first, rates) =
             (lists.map(|list| list.first().copied()), lists.map(|list| timeline::rate(list)));
+        let force = mean_length(&block.accelerometer);
         let bytes = source.bytes_total();
         let again = path != Path::new("-") && (path.is_file() || path.is_dir());
         let held = if again { None } else { Some((source, block)) };
-        Ok(Some(Self { path: path.to_owned(), first, rates, bytes, held }))
+        Ok(Some(Self { path: path.to_owned(), first, rates, force, bytes, held }))
     }
 
     /// The first stamp of either sensor.
@@ -344,6 +348,38 @@ fn refuse_two_rates(parts: &[Part]) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// Gravity that differs by a large factor is gravity in two units.
+fn refuse_two_units(parts: &[Part]) -> Result<(), Error> {
+    /// Neither motion nor a bias makes so much of the mean; g and m/s² are 9.8 apart.
+    const FACTOR: f64 = 5.0;
+    /// Less than this, in whatever unit, is no gravity.
+    const LEAST: f64 = 0.5;
+    let mut forces =
+        parts.iter().filter_map(|part| Some((part, part.force.filter(|f| *f > LEAST)?)));
+    let Some((one, force)) = forces.next() else { return Ok(()) };
+    match forces.find(|(_, own)| own / force > FACTOR || force / own > FACTOR) {
+        None => Ok(()),
+        Some((other, own)) => Err(Error::data(format!(
+            "the accelerometer reads {force:.3} m/s² on average in {} and {own:.3} in {}: one of \
+             them is in another unit; convert it first with --accel-unit",
+            name(&one.path),
+            name(&other.path)
+        ))),
+    }
+}
+
+/// Length of the mean of a sensor's finite samples; `None` without any.
+fn mean_length(samples: &[Sample]) -> Option<f64> {
+    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    for sample in samples.iter().filter(|s| s.value.iter().all(|x| x.is_finite())) {
+        for (sum, x) in sum.iter_mut().zip(sample.value) {
+            *sum += x;
+        }
+        count += 1.0;
+    }
+    (count > 0.0).then(|| sum.iter().map(|x| x * x).sum::<f64>().sqrt() / count)
 }
 
 /// Adds the messages of one file to those of the files before it.
