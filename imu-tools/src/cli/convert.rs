@@ -35,7 +35,7 @@ pub(super) struct Convert {
     /// The recordings (- for a pipe), and last the new file: .bag, .mcap or .csv, or - for a pipe
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Write this format whatever the file's name: bag, csv (a pipe's, unless you say otherwise)
+    /// Write this format whatever the name: bag, mcap or csv (a pipe gets csv unless you say so)
     #[arg(long = "to", value_name = "FORMAT")]
     format: Option<Format>,
     /// Write over a file that is there, after several recordings too

@@ -241,19 +241,17 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     if start.is_empty() {
         return Err(Error::data(format!("{} is empty", path.display())));
     }
-    if start.starts_with(b"#ROSBAG")
-        || path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bag"))
-    {
+    // What it holds decides; the name tells only what a damaged beginning should have been.
+    let named = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+    let holds = |magic: &[u8]| start.starts_with(magic);
+    let other = holds(b"#ROSBAG") || holds(mcap::MAGIC) || holds(ulog::MAGIC);
+    if holds(b"#ROSBAG") || (named("bag") && !other) {
         return Ok(Box::new(bag::BagReader::open(input, options)?));
     }
-    if start.starts_with(mcap::MAGIC)
-        || path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mcap"))
-    {
+    if holds(mcap::MAGIC) || (named("mcap") && !other) {
         return Ok(Box::new(mcap::McapReader::open(input, options)?));
     }
-    if start.starts_with(ulog::MAGIC)
-        || path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ulg"))
-    {
+    if holds(ulog::MAGIC) || (named("ulg") && !other) {
         return Ok(Box::new(ulog::UlogReader::open(input, options)?));
     }
     if start.contains(&0) {
