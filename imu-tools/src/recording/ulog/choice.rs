@@ -255,17 +255,20 @@ impl Choice {
             self.several(&gyroscopes, &accelerometers, path)?;
         }
         let (gyroscope, accelerometer) = (gyroscopes.first(), accelerometers.first());
-        if self.gyroscope.is_empty()
-            && let Some(chosen) = gyroscope
-        {
+        let new_gyroscope = gyroscope.filter(|_| self.gyroscope.is_empty());
+        let new_accelerometer = accelerometer.filter(|_| self.accelerometer.is_empty());
+        if let Some(chosen) = new_gyroscope {
             self.gyroscope = chosen.label();
-            self.tell(Sensor::Gyroscope, chosen, &found.gyroscope);
+            self.tell(Sensor::Gyroscope.name(), chosen, &found.gyroscope);
         }
-        if self.accelerometer.is_empty()
-            && let Some(chosen) = accelerometer
-        {
+        if let Some(chosen) = new_accelerometer {
             self.accelerometer = chosen.label();
-            self.tell(Sensor::Accelerometer, chosen, &found.accelerometer);
+            if self.accelerometer == self.gyroscope && new_gyroscope.is_some() {
+                self.notes.pop();
+                self.tell("IMU", chosen, &found.accelerometer);
+            } else {
+                self.tell(Sensor::Accelerometer.name(), chosen, &found.accelerometer);
+            }
         }
         if self.thermometer.is_empty() {
             let thermometer = gyroscope
@@ -306,7 +309,7 @@ impl Choice {
     }
 
     /// Says what was chosen, and what else there is.
-    fn tell(&mut self, sensor: Sensor, chosen: &Candidate, all: &[Candidate]) {
+    fn tell(&mut self, whose: &str, chosen: &Candidate, all: &[Candidate]) {
         let others: Vec<String> =
             all.iter().filter(|c| *c != chosen && c.readings > 0).map(Candidate::label).collect();
         let others = match others.join(", ") {
@@ -314,8 +317,7 @@ impl Choice {
             others => format!("; --topic has others: {others}"),
         };
         self.notes.push(Note::Info(format!(
-            "the {}'s readings are those of {}: {}{others}",
-            sensor.name(),
+            "the {whose}'s readings are those of {}: {}{others}",
             chosen.label(),
             chosen.kind.in_words(),
         )));

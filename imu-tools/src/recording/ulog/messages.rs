@@ -2,8 +2,8 @@
 //! bytes that are none.
 //!
 //! Nothing in a log checks its bytes, but its data is hard to mistake: the size of a data message
-//! must be the one that the format of its topic has. Whatever else comes is believed when another
-//! message can start behind it.
+//! must be the one that the format of its topic has, and another message must be able to start
+//! behind it. Where none can, the damage may have begun within: such data is not used.
 
 use super::definitions::{Definitions, NAME, Subscribed};
 use super::format::Defined;
@@ -44,10 +44,10 @@ enum Trust {
     None,
     /// Their size and kind can be a message's.
     Doubtful,
-    /// Their content is that of their kind.
-    Sound,
-    /// So is their size.
-    Certain,
+    /// Their words are those of their kind.
+    Words,
+    /// Their size is that of their topic, or all of them are as they must be.
+    Size,
 }
 
 /// The messages of a log, front to back.
@@ -112,7 +112,7 @@ impl Messages {
                 if !self.recover(true)? {
                     return Ok(None);
                 }
-            } else if trust == Trust::Certain || self.is_believed(trust, length)? {
+            } else if self.is_believed(trust, length)? {
                 self.length = length;
                 return self.take(kind).map(Some);
             } else if !self.recover(false)? {
@@ -196,19 +196,31 @@ impl Messages {
     }
 
     /// Whether a whole message of this trust is taken for one, by what follows it.
+    #[inline]
     fn is_believed(&mut self, trust: Trust, length: usize) -> Result<bool, Error> {
         if trust == Trust::None {
             return Ok(false);
         }
-        self.input.fill(length + LONGEST + LOOK)?;
+        self.input.fill(length + LOOK)?;
         let bytes = self.input.at_hand();
-        let next = bytes.get(length..).unwrap_or_default();
-        let here = self.input.offset() + length as u64;
-        if self.appended.first() == Some(&here) || self.judge(next) != Trust::None {
+        let edge = self.appended.first().map_or(usize::MAX, |edge| {
+            usize::try_from(edge - self.input.offset()).unwrap_or(usize::MAX)
+        });
+        let next = bytes.get(length..bytes.len().min(edge)).unwrap_or_default();
+        if self.judge(next) != Trust::None {
             return Ok(true);
         }
+        self.is_believed_before_damage(trust, length)
+    }
+
+    /// As above, where no message follows. Words speak for themselves unless they have swallowed
+    /// another message; numbers may be a part of the damage.
+    #[cold]
+    fn is_believed_before_damage(&mut self, trust: Trust, length: usize) -> Result<bool, Error> {
+        self.input.fill(length + LONGEST + LOOK)?;
+        let bytes = self.input.at_hand();
         let swallowed = (1..length).any(|at| self.is_sound(bytes.get(at..).unwrap_or_default()));
-        Ok(trust == Trust::Sound && !swallowed)
+        Ok(trust == Trust::Words && !swallowed)
     }
 
     /// Searches for the next message that can be trusted, behind the first byte at hand; `false`
@@ -248,7 +260,7 @@ impl Messages {
     fn is_sound(&self, bytes: &[u8]) -> bool {
         let Some((size, _)) = header(bytes) else { return false };
         bytes.len() >= HEADER + size
-            && self.judge(bytes) >= Trust::Sound
+            && self.judge(bytes) >= Trust::Words
             && self.judge(bytes.get(HEADER + size..).unwrap_or_default()) != Trust::None
     }
 
@@ -266,14 +278,14 @@ impl Messages {
                 let Some(number) = body.first_chunk() else { return sized(size >= 2) };
                 let place = self.definitions.place(u16::from_le_bytes(*number));
                 match place.and_then(|place| self.definitions.at(place)?.lengths) {
-                    Some((least, most)) if (least..=most).contains(&(size - 2)) => Trust::Certain,
+                    Some((least, most)) if (least..=most).contains(&(size - 2)) => Trust::Size,
                     Some(_) => Trust::None,
                     None => sized(size >= 2),
                 }
             }
             b'S' if size != SYNC.len() || !SYNC.starts_with(body) => Trust::None,
             b'S' if short => Trust::Doubtful,
-            b'S' => Trust::Certain,
+            b'S' => Trust::Size,
             b'A' => match body.get(3..) {
                 Some(name) if size > 3 && !short => self.judge_topic(name),
                 _ => sized(size > 3),
@@ -291,7 +303,7 @@ impl Messages {
 
     fn judge_topic(&self, name: &[u8]) -> Trust {
         match std::str::from_utf8(name) {
-            Ok(name) if self.definitions.formats.knows(name) => Trust::Sound,
+            Ok(name) if self.definitions.formats.knows(name) => Trust::Words,
             Ok(name) if name.len() <= NAME && name.bytes().all(is_of_name) => Trust::Doubtful,
             _ => Trust::None,
         }
@@ -319,7 +331,7 @@ fn judge_format(body: &[u8], short: bool) -> Trust {
     if colon < 1 || body.get(colon) != Some(&b':') {
         Trust::None
     } else if colon > 2 && type_name.iter().take(3).filter(|&&b| is_of_name(b)).count() == 3 {
-        Trust::Sound
+        Trust::Words
     } else {
         Trust::Doubtful
     }
@@ -338,7 +350,7 @@ fn judge_value(body: &[u8], size: usize) -> Trust {
     let key = rest.get(..key).unwrap_or_default();
     let known = types.iter().any(|name| key.starts_with(name)) && key.contains(&b' ');
     if known && key.iter().all(|&b| b.is_ascii_graphic() || b == b' ') {
-        Trust::Sound
+        Trust::Words
     } else {
         Trust::Doubtful
     }
@@ -352,5 +364,5 @@ fn judge_text(body: &[u8], size: usize, start: usize) -> Trust {
     let level = body.first().is_some_and(|level| (b'0'..=b'7').contains(level));
     let text = body.get(start..).unwrap_or_default();
     let printed = text.iter().take(32).all(|&b| b >= b' ' || b"\t\n\r\x1b".contains(&b));
-    if level && text.len() >= 4 && printed { Trust::Sound } else { Trust::Doubtful }
+    if level && text.len() >= 4 && printed { Trust::Words } else { Trust::Doubtful }
 }
