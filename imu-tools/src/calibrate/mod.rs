@@ -16,13 +16,20 @@
 //! # Ok::<(), imu_tools::error::Error>(())
 //! ```
 
+mod advice;
 pub mod batch;
 pub mod block_means;
+mod checks;
+mod drift;
 pub mod five_terms;
 mod gravity;
 pub mod maximum_likelihood;
 mod sensor;
 pub mod slope;
+mod stillness;
+mod usual;
+
+pub use checks::Checks;
 
 use imu_core::allan::{Contradiction, Octave, Parameter};
 
@@ -45,6 +52,8 @@ pub struct Options {
     pub unit_is_given: bool,
     /// How N and K are estimated.
     pub estimator: Estimator,
+    /// Leave nothing out: neither what was handled nor the warm-up, and read no K past a ramp.
+    pub keep_all: bool,
 }
 
 /// How N and K are estimated.
@@ -123,8 +132,28 @@ pub struct SensorNoise {
     pub contradiction: Option<Contradiction>,
     /// White noise and random walk are not all there is on these axes.
     pub misfit: [bool; 3],
+    /// Stretches in which the sensor was not at rest, the first thousand; left out unless
+    /// [`Options::keep_all`].
+    pub disturbed: Vec<Stretch>,
+    /// Seconds at the beginning in which the sensor warmed up, which decide nothing about long
+    /// averaging times unless [`Options::keep_all`].
+    pub warm_up_s: Option<f64>,
+    /// A drift over all of the record, unit per second on each axis, where there is more of it than
+    /// noise explains. K is then read from the Hadamard variance, unless [`Options::keep_all`].
+    pub ramp: Option<[f64; 3]>,
+    /// What the values themselves say of the sensor and its driver.
+    pub checks: Checks,
     /// The variance at every τ that has one, shortest first.
     pub deviation: Vec<Deviation>,
+}
+
+/// A part of a recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// Seconds after the first sample.
+    pub from_s: f64,
+    /// Seconds after the first sample.
+    pub to_s: f64,
 }
 
 /// N and K of one axis, or of all together.
@@ -168,8 +197,8 @@ pub fn calibrate(
     mut progress: impl FnMut(Progress),
 ) -> Result<Calibration, Error> {
     let mut window = Window::new(options);
-    let mut gyroscope = Pipeline::new(SensorKind::Gyroscope, options.estimator);
-    let mut accelerometer = Pipeline::new(SensorKind::Accelerometer, options.estimator);
+    let mut gyroscope = Pipeline::new(SensorKind::Gyroscope, options);
+    let mut accelerometer = Pipeline::new(SensorKind::Accelerometer, options);
     let mut samples = 0;
     let mut record = 0;
     let mut source = read_ahead(source, |block, at| {
@@ -239,7 +268,7 @@ pub fn calibrate(
         }
     }
     for sensor in [&gyroscope, &accelerometer].into_iter().flatten() {
-        warnings.extend(sensor.warnings());
+        warnings.extend(advice::warnings(sensor, options.keep_all));
     }
     let span = |sensor: &Option<SensorNoise>| sensor.as_ref().map_or(0.0, |s| s.stamps.span_s);
     Ok(Calibration {

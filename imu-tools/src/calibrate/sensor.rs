@@ -6,11 +6,12 @@ use imu_core::allan::{
 };
 
 use super::block_means::BlockMeans;
-use super::maximum_likelihood;
+use super::checks::{Checker, Checks};
 use super::slope::{self, SlopeReading};
-use super::{AxisNoise, Deviation, Estimator, LEVELS, SensorKind, SensorNoise};
+use super::stillness::Stillness;
+use super::{AxisNoise, Deviation, Estimator, LEVELS, Options, SensorKind, SensorNoise, Stretch};
+use super::{drift, maximum_likelihood};
 use crate::recording::{Event, Sample, Summary, Timeline};
-use crate::scene::display_duration;
 
 /// Windows a τ: statistically as good as full overlap.
 const WINDOWS: usize = 4;
@@ -20,61 +21,147 @@ type SensorLadder = AllanLadder<f64, 3, LEVELS, WINDOWS>;
 /// Takes the samples of one sensor as they come.
 pub(super) struct Pipeline {
     kind: SensorKind,
+    options: Options,
     timeline: Timeline,
+    checker: Checker,
+    stillness: Stillness,
     taken: Taken,
+    /// First and latest stamp, and how many.
+    first_ns: Option<i64>,
+    latest_ns: i64,
+    samples: u64,
 }
 
 /// What becomes of values on the grid.
 struct Taken {
     kind: SensorKind,
-    estimator: Estimator,
-    /// Begun when the first values show what is normal.
-    ladder: Option<SensorLadder>,
+    /// Known when the first values of a record show what is normal.
+    limits: Option<Limits>,
+    ladder: SensorLadder,
     /// What the ladders of the records before this one gathered.
     earlier: Option<SensorLadder>,
-    /// Only for maximum likelihood.
-    means: Option<BlockMeans>,
-    /// Σ of values less the first reference of this record, and how many.
+    means: BlockMeans,
+    /// Σ of values less the reference of this record, and how many.
     sum: [f64; 3],
-    offset: [f64; 3],
     count: u64,
     /// Mean and count of the records before this one; a record without a sample has no count.
     records: Vec<([f64; 3], u64)>,
 }
 
+/// What a reading of the sensor can be: anything else is a glitch, and counts as missing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    reference: [f64; 3],
+    bound: [f64; 3],
+}
+
+impl Limits {
+    /// Around values like these: their median, and as a bound a thousand times their median absolute
+    /// deviation. Where that is zero, or values are few, no sensor's range is beyond 1000 rad/s or
+    /// 10 km/s².
+    pub(super) fn of(kind: SensorKind, values: &[[f64; 3]]) -> Self {
+        let range = match kind {
+            SensorKind::Gyroscope => 1e3,
+            SensorKind::Accelerometer => 1e4,
+        };
+        let (mut reference, mut bound) = ([0.0; 3], [range; 3]);
+        for (axis, (reference, bound)) in reference.iter_mut().zip(&mut bound).enumerate() {
+            let column = || values.iter().map(|row| row[axis]).filter(|x| x.is_finite());
+            *reference = median(column().collect());
+            let deviation = median(column().map(|x| (x - *reference).abs()).collect());
+            if deviation > 0.0 && values.len() >= 64 {
+                *bound = (1e3 * deviation).min(SensorLadder::limit());
+            }
+        }
+        Self { reference, bound }
+    }
+
+    /// Whether a reading is within.
+    #[inline]
+    pub(super) fn hold(&self, value: &[f64; 3]) -> bool {
+        let within = |axis: usize| (value[axis] - self.reference[axis]).abs() <= self.bound[axis];
+        within(0) && within(1) && within(2) // false for a NaN
+    }
+}
+
 impl Pipeline {
-    pub(super) fn new(kind: SensorKind, estimator: Estimator) -> Self {
-        let means = (estimator == Estimator::MaximumLikelihood).then(BlockMeans::new);
+    pub(super) fn new(kind: SensorKind, options: &Options) -> Self {
         let taken = Taken {
             kind,
-            estimator,
-            ladder: None,
+            limits: None,
+            ladder: SensorLadder::new(),
             earlier: None,
-            means,
+            means: BlockMeans::new(),
             sum: [0.0; 3],
-            offset: [0.0; 3],
             count: 0,
             records: Vec::new(),
         };
-        Self { kind, timeline: Timeline::new(), taken }
+        Self {
+            kind,
+            options: *options,
+            timeline: Timeline::new(),
+            checker: Checker::new(),
+            stillness: Stillness::new(options.keep_all),
+            taken,
+            first_ns: None,
+            latest_ns: i64::MIN,
+            samples: 0,
+        }
     }
 
     pub(super) fn push(&mut self, samples: &[Sample]) {
-        let taken = &mut self.taken;
-        self.timeline.push(samples, |event| taken.take(event));
+        if let (Some(first), Some(last)) = (samples.first(), samples.last()) {
+            self.first_ns.get_or_insert(first.stamp_ns);
+            self.latest_ns = self.latest_ns.max(last.stamp_ns);
+            self.samples += samples.len() as u64;
+        }
+        let period_s = self.rough_period_s();
+        let Self { timeline, checker, stillness, taken, .. } = self;
+        timeline.push(samples, |event| {
+            let limits = taken.limits(event);
+            if let Event::Values(values) = event {
+                checker.take(values);
+            }
+            stillness.take(event, period_s, limits, &mut |event| taken.take(event));
+        });
+    }
+
+    /// Time between samples, near enough to say how many make a second.
+    fn rough_period_s(&self) -> f64 {
+        let span = self.latest_ns.saturating_sub(self.first_ns.unwrap_or(self.latest_ns));
+        span as f64 * 1e-9 / self.samples as f64
     }
 
     /// Another record follows: no difference spans the break, all sums add.
     pub(super) fn next_record(&mut self) {
-        let taken = &mut self.taken;
-        self.timeline.next_record(|event| taken.take(event));
+        let period_s = self.rough_period_s();
+        let Self { timeline, checker, stillness, taken, .. } = self;
+        timeline.next_record(|event| {
+            let limits = taken.limits(event);
+            if let Event::Values(values) = event {
+                checker.take(values);
+            }
+            stillness.take(event, period_s, limits, &mut |event| taken.take(event));
+        });
+        stillness.next_record(&mut |event| taken.take(event));
         taken.close_record();
+        self.first_ns = None;
+        self.latest_ns = i64::MIN;
+        self.samples = 0;
     }
 
     /// The noise, or nothing if there was not a sample.
     pub(super) fn finish(self, topic: &str) -> Option<SensorNoise> {
-        let Self { kind, timeline, mut taken } = self;
-        let stamps = timeline.finish(|event| taken.take(event));
+        let period_s = self.rough_period_s();
+        let Self { kind, options, timeline, mut checker, mut stillness, mut taken, .. } = self;
+        let stamps = timeline.finish(|event| {
+            let limits = taken.limits(event);
+            if let Event::Values(values) = event {
+                checker.take(values);
+            }
+            stillness.take(event, period_s, limits, &mut |event| taken.take(event));
+        });
+        let disturbed = stillness.finish(&mut |event| taken.take(event));
         taken.close_record();
         let ladder = taken.earlier?;
         let count = taken.records.iter().map(|(_, count)| count).sum::<u64>().max(1) as f64;
@@ -85,7 +172,15 @@ impl Pipeline {
                 *mean += share * of_record;
             }
         }
-        let mut noise = noise(kind, topic, stamps, &ladder, mean);
+        let tau0_s = if stamps.rate_hz > 0.0 { 1.0 / stamps.rate_hz } else { 0.0 };
+        let seconds = |samples: u64| samples as f64 * tau0_s;
+        let means = &taken.means;
+        let mut noise = noise(kind, topic, stamps, &ladder, means, mean, options.keep_all);
+        noise.disturbed = disturbed
+            .iter()
+            .map(|s| Stretch { from_s: seconds(s.from), to_s: seconds(s.to) })
+            .collect();
+        noise.checks = checker.finish();
         noise.record_means = taken
             .records
             .iter()
@@ -93,9 +188,9 @@ impl Pipeline {
             .filter(|(_, (_, count))| *count > 0)
             .map(|(record, (mean, _))| (record, *mean))
             .collect();
-        match taken.estimator {
+        match options.estimator {
             Estimator::Octaves => {}
-            Estimator::MaximumLikelihood => noise.by_maximum_likelihood(&taken.means?),
+            Estimator::MaximumLikelihood => noise.by_maximum_likelihood(means),
             Estimator::Slope => noise.by_slope(),
         }
         Some(noise)
@@ -103,85 +198,61 @@ impl Pipeline {
 }
 
 impl Taken {
-    /// Puts the record at hand beside those before it; the next one has a reference of its own.
+    /// Puts the record at hand beside those before it; the next one has limits of its own.
     fn close_record(&mut self) {
-        if let Some(ladder) = self.ladder.take() {
+        let limits = self.limits.take();
+        if limits.is_some() {
+            let ladder = std::mem::take(&mut self.ladder);
             match &mut self.earlier {
                 Some(earlier) => earlier.pool(&ladder),
                 None => self.earlier = Some(ladder),
             }
         }
-        if let Some(means) = &mut self.means {
-            means.next_record();
-        }
+        self.means.next_record();
         let count = std::mem::take(&mut self.count);
-        let mut mean = std::mem::take(&mut self.offset);
+        let mut mean = limits.map_or([0.0; 3], |limits| limits.reference);
         for (mean, sum) in mean.iter_mut().zip(std::mem::take(&mut self.sum)) {
             *mean += sum / count.max(1) as f64;
         }
         self.records.push((mean, count));
     }
 
+    /// The limits, learnt from the first values.
+    fn limits(&mut self, event: Event<'_>) -> Option<Limits> {
+        if self.limits.is_none()
+            && let Event::Values(values) = event
+        {
+            let limits = Limits::of(self.kind, values);
+            self.ladder =
+                SensorLadder::with_reference(limits.reference, limits.bound).unwrap_or_default();
+            self.limits = Some(limits);
+        }
+        self.limits
+    }
+
     fn take(&mut self, event: Event<'_>) {
+        let Some(limits) = self.limits else { return };
         match event {
             Event::Values(values) => {
-                let ladder = self.ladder.get_or_insert_with(|| {
-                    let (ladder, reference) = begin(self.kind, values);
-                    self.offset = reference;
-                    ladder
-                });
-                ladder.extend(values);
-                if let Some(means) = &mut self.means {
-                    means.extend(values);
-                }
-                for value in values {
-                    if value.iter().all(|x| x.abs() < 1e6) {
-                        for ((sum, x), offset) in self.sum.iter_mut().zip(value).zip(self.offset) {
-                            *sum += x - offset;
-                        }
-                        self.count += 1;
+                self.ladder.extend(values);
+                self.means.extend(values);
+                for value in values.iter().filter(|value| limits.hold(value)) {
+                    for ((sum, x), offset) in self.sum.iter_mut().zip(value).zip(limits.reference) {
+                        *sum += x - offset;
                     }
+                    self.count += 1;
                 }
             }
             Event::Missing(n) => {
-                if let Some(ladder) = &mut self.ladder {
-                    ladder.missing(n);
-                }
-                if let Some(means) = &mut self.means {
-                    means.missing(n);
-                }
+                self.ladder.missing(n);
+                self.means.missing(n);
             }
             Event::Restart => {
-                if let Some(ladder) = &mut self.ladder {
-                    ladder.restart();
-                }
-                if let Some(means) = &mut self.means {
-                    means.restart();
-                }
+                self.ladder.restart();
+                self.means.restart();
             }
         }
     }
-}
-
-/// A ladder for values like these, and its reference: their median, and as a bound a thousand times
-/// their median absolute deviation. Where that is zero, or values are few, no sensor's range is
-/// beyond 1000 rad/s or 10 km/s².
-fn begin(kind: SensorKind, values: &[[f64; 3]]) -> (SensorLadder, [f64; 3]) {
-    let range = match kind {
-        SensorKind::Gyroscope => 1e3,
-        SensorKind::Accelerometer => 1e4,
-    };
-    let (mut reference, mut bound) = ([0.0; 3], [range; 3]);
-    for (axis, (reference, bound)) in reference.iter_mut().zip(&mut bound).enumerate() {
-        let column = || values.iter().map(|row| row[axis]).filter(|x| x.is_finite());
-        *reference = median(column().collect());
-        let deviation = median(column().map(|x| (x - *reference).abs()).collect());
-        if deviation > 0.0 && values.len() >= 64 {
-            *bound = (1e3 * deviation).min(SensorLadder::limit());
-        }
-    }
-    let ladder = SensorLadder::with_reference(reference, bound).unwrap_or_default();
-    (ladder, reference)
 }
 
 /// The middle value; 0 of none.
@@ -199,24 +270,43 @@ fn noise(
     topic: &str,
     stamps: Summary,
     ladder: &SensorLadder,
+    means: &BlockMeans,
     mean: [f64; 3],
+    keep_all: bool,
 ) -> SensorNoise {
     let tau0_s = if stamps.rate_hz > 0.0 { 1.0 / stamps.rate_hz } else { 0.0 };
     let sampling =
         Sampling { tau0_s, difference: Difference::Allan, windows: WINDOWS as u8, records: 1 };
-    let octaves = [0, 1, 2].map(|axis| ladder.octaves(axis));
+    let whole = [0, 1, 2].map(|axis| ladder.octaves(axis));
+    let from_of = |octaves: &[[Octave; LEVELS]; 3]| {
+        octaves
+            .iter()
+            .filter_map(|axis| fit_noise(axis, sampling).contradiction)
+            .max_by_key(|c| c.octave)
+    };
+    let drift = drift::examine(means, whole, tau0_s, from_of(&whole).map_or(0, |c| c.octave + 1));
+    let octaves = if keep_all { whole } else { drift.octaves };
 
     // One axis that shows a low-pass filter speaks for all: they share the filter.
-    let contradiction = octaves
-        .iter()
-        .filter_map(|axis| fit_noise(axis, sampling).contradiction)
-        .max_by_key(|c| c.octave);
+    let contradiction = from_of(&octaves);
     let from = contradiction.map_or(0, |c| c.octave + 1);
     let fits = octaves.map(|axis| fit_noise_from(&axis, sampling, from));
     // An axis that never changes is no record of noise.
     let live: Vec<_> = octaves.into_iter().filter(|axis| axis[0].variance > 0.0).collect();
     let together = Sampling { records: live.len() as u32, ..sampling };
     let pooled = fit_noise_from(&average_octaves(&live), together, from);
+    let mut axes =
+        fits.map(|f| AxisNoise { noise_density: f.noise_density, random_walk: f.random_walk });
+    let mut pooled_noise =
+        AxisNoise { noise_density: pooled.noise_density, random_walk: pooled.random_walk };
+    let mut misfit = fits.map(|f| f.misfit);
+    if let Some(ramp) = drift.ramp.filter(|_| !keep_all) {
+        for ((axis, misfit), fit) in axes.iter_mut().zip(&mut misfit).zip(&ramp.axes) {
+            axis.random_walk = fit.random_walk;
+            *misfit = fit.misfit;
+        }
+        pooled_noise.random_walk = ramp.pooled.random_walk;
+    }
 
     let tau = |octave: &Octave| octave.samples as f64 * tau0_s;
     let deviation = (0..LEVELS)
@@ -238,12 +328,15 @@ fn noise(
         rejected: ladder.rejected_samples(),
         mean,
         record_means: Vec::new(),
-        axes: fits
-            .map(|f| AxisNoise { noise_density: f.noise_density, random_walk: f.random_walk }),
-        pooled: AxisNoise { noise_density: pooled.noise_density, random_walk: pooled.random_walk },
+        axes,
+        pooled: pooled_noise,
         tau_used_s: pooled.used.map(|(first, last)| (at(first), at(last))),
         contradiction,
-        misfit: fits.map(|f| f.misfit),
+        misfit,
+        disturbed: Vec::new(),
+        warm_up_s: (drift.warm_up > 0).then_some(drift.warm_up as f64 * tau0_s),
+        ramp: drift.ramp.map(|ramp| ramp.slope),
+        checks: Checks::default(),
         deviation,
     }
 }
@@ -285,95 +378,6 @@ impl SensorNoise {
     pub fn curve(&self, axis: usize) -> Vec<Octave> {
         self.deviation.iter().filter_map(|d| d.octaves.get(axis).copied()).collect()
     }
-
-    /// How many times the least noisy axis the noisiest one has of white noise, if that is twice or
-    /// more.
-    fn spread_of_axes(&self) -> Option<f64> {
-        let densities = self.axes.iter().filter_map(|axis| match axis.noise_density {
-            Parameter::Observable { value, .. } => Some(value),
-            Parameter::NotObservable { .. } => None,
-        });
-        let (least, most) =
-            densities.fold((f64::INFINITY, 0.0_f64), |(low, high), n| (low.min(n), high.max(n)));
-        (most >= 2.0 * least).then(|| most / least)
-    }
-
-    /// What its user should know before believing it.
-    pub(super) fn warnings(&self) -> Vec<String> {
-        let name = self.kind.name();
-        let mut warnings = Vec::new();
-        if let Some(contradiction) = self.contradiction {
-            let longest = self.deviation.get(contradiction.octave).map_or(0.0, |d| d.tau_s);
-            warnings.push(format!(
-                "{name}: averaging times up to {longest:.3} s decide nothing: they contradict the \
-                 longer ones by {:.0} standard deviations, as a low-pass filter or a vibration makes \
-                 them do",
-                contradiction.sigmas
-            ));
-        }
-        for (axis, _) in ["x", "y", "z"].iter().zip(self.misfit).filter(|(_, misfit)| *misfit) {
-            warnings.push(format!(
-                "{name}: axis {axis} has more in it than white noise and a random walk (bias \
-                 instability, drift, temperature, motion): take its K for an upper limit, and the \
-                 intervals for too narrow"
-            ));
-        }
-        if let Some(times) = self.spread_of_axes() {
-            warnings.push(format!(
-                "{name}: one axis has {times:.1} times the white noise of another; what is pooled \
-                 fits neither: take each axis by itself"
-            ));
-        }
-        if self.rejected > 0 {
-            warnings.push(format!(
-                "{name}: {} samples are not finite or absurdly large and count as missing",
-                self.rejected
-            ));
-        }
-        let stuck = self.deviation.first().map_or([false; 3], |first| {
-            first.octaves.map(|octave| octave.differences > 0 && octave.variance == 0.0)
-        });
-        for (axis, _) in ["x", "y", "z"].iter().zip(stuck).filter(|(_, stuck)| *stuck) {
-            warnings.push(format!(
-                "{name}: axis {axis} never changes: it is stuck, or finer than the recording's \
-                 digits"
-            ));
-        }
-        let Summary { samples, gap_count, missing, duplicates, backward, restarts, .. } =
-            self.stamps;
-        if gap_count > 0 {
-            warnings.push(format!("{name}: samples missing: {missing}, gaps: {gap_count}"));
-        }
-        if duplicates > samples / 2 {
-            warnings.push(format!(
-                "{name}: most stamps are the same as the one before: they are too coarse, and the \
-                 rate (and with it N and K) may be wrong"
-            ));
-        } else if duplicates > 0 {
-            warnings
-                .push(format!("{name}: stamps that are the same as the one before: {duplicates}"));
-        }
-        if backward > 0 {
-            warnings
-                .push(format!("{name}: stamps that are earlier than the one before: {backward}"));
-        }
-        if restarts > 0 {
-            warnings.push(format!(
-                "{name}: times that the clock was set back or stood still: {restarts}"
-            ));
-        }
-        if let Parameter::NotObservable { upper90, record_at_least_s } = self.pooled.random_walk
-            && upper90.is_finite()
-        {
-            let ns = (record_at_least_s.clamp(0.0, 1e9).round() * 1e9) as u64;
-            warnings.push(format!(
-                "{name}: the record is too short to show the random walk of the bias; record at \
-                 least {}, better for hours",
-                display_duration(ns)
-            ));
-        }
-        warnings
-    }
 }
 
 /// A number without an interval.
@@ -403,10 +407,9 @@ mod tests {
             row[2] += 1e-3 * (k % 7) as f64;
         }
         values[0] = [1e4; 3];
-        let (ladder, reference) = begin(SensorKind::Accelerometer, &values);
-        assert!((reference[2] - 9.803).abs() < 1e-9);
-        let mut ladder = ladder;
-        ladder.extend(&values);
-        assert_eq!(ladder.rejected_samples(), 1);
+        let limits = Limits::of(SensorKind::Accelerometer, &values);
+        assert!((limits.reference[2] - 9.803).abs() < 1e-9);
+        assert_eq!(values.iter().filter(|value| !limits.hold(value)).count(), 1);
+        assert!(!limits.hold(&[0.0, f64::NAN, 9.8]));
     }
 }

@@ -49,6 +49,9 @@ pub(super) struct Calibrate {
     /// End this many seconds after the first sample (of each record, where files are pooled)
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     to: Option<f64>,
+    /// Leave nothing out: neither handling and bumps nor the warm-up
+    #[arg(long)]
+    keep_all: bool,
     /// How to estimate N and K
     #[arg(long, value_enum, default_value_t = EstimatorName::Octaves)]
     estimator: EstimatorName,
@@ -107,6 +110,7 @@ impl Calibrate {
             from_s: self.from,
             to_s: self.to,
             unit_is_given: self.reading.accel_unit_is_given(),
+            keep_all: self.keep_all,
             estimator: match self.estimator {
                 EstimatorName::Octaves => Estimator::Octaves,
                 EstimatorName::Ml => Estimator::MaximumLikelihood,

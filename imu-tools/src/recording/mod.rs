@@ -51,7 +51,7 @@ pub(crate) use ahead::read_ahead;
 pub use convert::{Converted, convert};
 pub use format::Format;
 pub use joined::Joined;
-pub use timeline::{Event, Gap, Summary, Timeline};
+pub use timeline::{ClockStep, Event, Gap, Summary, Timeline};
 pub use units::{ForceUnit, RateUnit, TimeUnit};
 
 use crate::error::Error;

@@ -55,6 +55,11 @@ fn sensor(sensor: &SensorNoise) -> Value {
             })
         })
         .collect();
+    let disturbed: Vec<_> =
+        sensor.disturbed.iter().map(|s| json!({"from_s": s.from_s, "to_s": s.to_s})).collect();
+    let clock_steps: Vec<_> =
+        stamps.clock_steps.iter().map(|s| json!({"at_s": s.at_s, "by_s": s.by_s})).collect();
+    let checks = &sensor.checks;
     json!({
         "topic": sensor.topic,
         "samples": stamps.samples,
@@ -67,7 +72,20 @@ fn sensor(sensor: &SensorNoise) -> Value {
         "backward": stamps.backward,
         "restarts": stamps.restarts,
         "non_finite": sensor.rejected,
+        "clock_steps": clock_steps,
+        "rate_sd_hz": stamps.rate_sd_hz,
         "jitter_s": stamps.jitter_s,
+        "disturbed": disturbed,
+        "warm_up_s": sensor.warm_up_s,
+        "ramp_per_s": sensor.ramp,
+        "checks": {
+            "range": checks.range.map(|(low, high)| [low, high]),
+            "step": checks.step,
+            "stuck": checks.stuck,
+            "saturated": checks.saturated,
+            "held": checks.held,
+            "longest_hold": checks.longest_hold,
+        },
         "mean": sensor.mean,
         "tau_used_s": sensor.tau_used_s.map(|(first, last)| [first, last]),
         "axes": axes,

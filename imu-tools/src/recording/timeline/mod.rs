@@ -53,6 +53,15 @@ pub struct Gap {
     pub missing: u64,
 }
 
+/// A clock that was set while samples went on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClockStep {
+    /// Seconds from the first sample.
+    pub at_s: f64,
+    /// By how much, s; negative: it was set back.
+    pub by_s: f64,
+}
+
 /// What is known of a sensor's stamps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
@@ -60,6 +69,8 @@ pub struct Summary {
     pub samples: u64,
     /// Rate in Hz, fitted over the whole recording; 0 where fewer than two stamps differ.
     pub rate_hz: f64,
+    /// Its standard deviation, Hz, as far as jitter of the first and last stamp makes it.
+    pub rate_sd_hz: f64,
     /// Seconds from the first sample to the last, without what a [`Event::Restart`] spans.
     pub span_s: f64,
     /// The first gaps, at most [`Summary::GAPS_LISTED`].
@@ -73,6 +84,8 @@ pub struct Summary {
     pub duplicates: u64,
     /// Stamps earlier than the one before.
     pub backward: u64,
+    /// Times that the clock was set by up to a second while samples went on, the first ones.
+    pub clock_steps: Vec<ClockStep>,
     /// Times that the timeline was started anew.
     pub restarts: u64,
     /// Root mean square of stamp minus grid, seconds.
@@ -80,7 +93,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// So many gaps are listed one by one; the others are only counted.
+    /// So many gaps (and clock steps) are listed one by one; the others are only counted.
     pub const GAPS_LISTED: usize = 1000;
 }
 
@@ -164,6 +177,8 @@ impl Timeline {
         }
         if self.nanoseconds > 0.0 {
             self.summary.rate_hz = 1e9 * self.intervals / self.nanoseconds;
+            let ends = std::f64::consts::SQRT_2 * self.summary.jitter_s;
+            self.summary.rate_sd_hz = self.summary.rate_hz * ends * 1e9 / self.nanoseconds;
         }
         self.summary.span_s = self.nanoseconds * 1e-9;
         self.summary
@@ -219,7 +234,13 @@ impl Timeline {
                     self.missing(count, grid.elapsed(), to);
                     grid.miss(count, shift);
                 }
-                Verdict::Adjusted { shift } => grid.adjust(shift),
+                Verdict::Adjusted { shift } => {
+                    if self.summary.clock_steps.len() < Summary::GAPS_LISTED {
+                        let at_s = (self.nanoseconds + grid.elapsed()) * 1e-9;
+                        self.summary.clock_steps.push(ClockStep { at_s, by_s: shift * 1e-9 });
+                    }
+                    grid.adjust(shift);
+                }
                 Verdict::Restart { shift } => {
                     self.hand_on(to);
                     to(Event::Restart);

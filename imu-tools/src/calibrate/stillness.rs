@@ -1,0 +1,354 @@
+//! Handling, bumps and passing trucks: stretches in which a sensor that should be at rest is not.
+//!
+//! Samples are held back in windows of about a second. A window in which the sensor is touched has
+//! a larger variance than the others, or a mean that jumps away from its neighbour's. What is usual
+//! is learnt from the recording: centre and spread of the logarithm of the variance, and the size of
+//! the steps between neighbouring means, both from the lower quartile of the last [`RING`] windows,
+//! so that they stay right while up to two thirds of those are disturbed. A window beyond
+//! [`BEYOND`] spreads is disturbed, and so are eight in a row whose average is (a weak, long
+//! vibration); with each go its two neighbours.
+//!
+//! What is disturbed becomes missing time, which costs the longer averaging times next to nothing.
+//! But a sensor that was moved stands otherwise than before, and shows another part of gravity: if
+//! the means after the stretch are not those before it, no difference may span it, and it becomes a
+//! restart.
+//!
+//! Memory: the first [`START`] windows are held back, of 2048 samples at most, then some 40.
+
+use std::collections::VecDeque;
+
+use super::sensor::Limits;
+use super::usual::{Usual, WindowStatistics};
+use crate::recording::Event;
+
+/// Windows that show what is usual before any is judged.
+const START: usize = 256;
+/// Windows of which the usual is learnt later on.
+pub(super) const RING: usize = 512;
+/// In a recording of fewer windows nothing is judged.
+const FEWEST: usize = 16;
+/// The usual is learnt anew after so many windows.
+const RELEARN: u64 = 16;
+/// Spreads from the usual beyond which a window is disturbed: for Gaussian noise, less than one of
+/// 10¹⁴; real noise changes a little with time and temperature.
+pub(super) const BEYOND: f64 = 8.0;
+/// Windows of a weak disturbance that are judged together.
+pub(super) const GROUP: usize = 8;
+/// A window waits for so many after it: a group may still condemn it, or its neighbour.
+const WAIT: usize = GROUP + 2;
+/// Windows on either side of a disturbed stretch whose means are compared.
+const LEVEL: usize = 32;
+/// Fewer do not show a level.
+const FEWEST_FOR_LEVEL: usize = 8;
+/// Stretches that are listed, at most.
+const LISTED: usize = 1000;
+
+/// A stretch of samples on the grid, first and behind the last, missing ones counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Stretch {
+    pub(super) from: u64,
+    pub(super) to: u64,
+}
+
+/// What a window holds, in order.
+#[derive(Clone, Copy, Debug)]
+enum Piece {
+    Values(usize),
+    Missing(u64),
+    Restart,
+}
+
+/// A stretch of about a second.
+#[derive(Clone, Debug, Default)]
+struct Window {
+    start: u64,
+    /// Instants in it, missing ones counted.
+    length: u64,
+    pieces: Vec<Piece>,
+    values: Vec<[f64; 3]>,
+    /// `None` where too few samples are there.
+    statistics: Option<WindowStatistics>,
+    disturbed: bool,
+}
+
+impl Window {
+    fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+
+    /// Tells all that it holds.
+    fn tell(&self, to: &mut impl FnMut(Event<'_>)) {
+        let mut values = self.values.as_slice();
+        for piece in &self.pieces {
+            match *piece {
+                Piece::Values(n) => {
+                    let (now, later) = values.split_at(n.min(values.len()));
+                    to(Event::Values(now));
+                    values = later;
+                }
+                Piece::Missing(n) => to(Event::Missing(n)),
+                Piece::Restart => to(Event::Restart),
+            }
+        }
+    }
+}
+
+/// Holds a sensor's samples back until it is known whether it was at rest.
+#[derive(Debug)]
+pub(super) struct Stillness {
+    /// Samples a window; nothing is judged before it is known.
+    window: usize,
+    /// A reading beyond them is a glitch, which disturbs nobody.
+    limits: Option<Limits>,
+    /// Disturbed stretches are told, and passed on all the same.
+    keep_all: bool,
+    open: Window,
+    position: u64,
+    /// Windows that wait, oldest first.
+    waiting: VecDeque<Window>,
+    /// Emptied ones, whose memory is used again.
+    spare: Vec<Window>,
+    usual: Usual,
+    judged: bool,
+    windows: u64,
+    /// The window after a disturbed one goes with it.
+    follows: bool,
+    /// Means of the last windows that were passed on.
+    before: VecDeque<[f64; 3]>,
+    /// Instants left out since then; `None` while nothing is.
+    left_out: Option<u64>,
+    /// A restart lies in what was left out.
+    restarted: bool,
+    stretches: Vec<Stretch>,
+}
+
+impl Stillness {
+    pub(super) fn new(keep_all: bool) -> Self {
+        Self {
+            window: 0,
+            limits: None,
+            keep_all,
+            open: Window::default(),
+            position: 0,
+            waiting: VecDeque::new(),
+            spare: Vec::new(),
+            usual: Usual::default(),
+            judged: false,
+            windows: 0,
+            follows: false,
+            before: VecDeque::new(),
+            left_out: None,
+            restarted: false,
+            stretches: Vec::new(),
+        }
+    }
+
+    /// Takes what the timeline says, `period_s` apart, and hands on what is decided.
+    pub(super) fn take(
+        &mut self,
+        event: Event<'_>,
+        period_s: f64,
+        limits: Option<Limits>,
+        to: &mut impl FnMut(Event<'_>),
+    ) {
+        if self.window == 0 {
+            self.window = ((1.0 / period_s) as usize).clamp(16, 2048);
+        }
+        self.limits = limits;
+        match event {
+            Event::Values(values) => {
+                let mut values = values;
+                while !values.is_empty() {
+                    let room = self.window - self.open.values.len();
+                    let (now, later) = values.split_at(room.min(values.len()));
+                    self.open.values.extend_from_slice(now);
+                    self.open.pieces.push(Piece::Values(now.len()));
+                    self.open.length += now.len() as u64;
+                    if self.open.values.len() == self.window {
+                        self.close(to);
+                    }
+                    values = later;
+                }
+            }
+            Event::Missing(n) => {
+                self.open.pieces.push(Piece::Missing(n));
+                self.open.length += n;
+                if n >= self.window as u64 {
+                    self.close(to);
+                }
+            }
+            Event::Restart => {
+                self.close(to);
+                self.open.pieces.push(Piece::Restart);
+            }
+        }
+    }
+
+    /// Hands on what still waits. What is usual of the next record is learnt anew.
+    pub(super) fn next_record(&mut self, to: &mut impl FnMut(Event<'_>)) {
+        self.close(to);
+        if !self.judged && self.waiting.len() >= FEWEST {
+            self.judge_all();
+        }
+        self.release(true, to);
+        let next = Self::new(self.keep_all);
+        let (position, stretches) = (self.position, std::mem::take(&mut self.stretches));
+        *self = Self { position, stretches, ..next };
+    }
+
+    /// Hands on what still waits. Says which stretches are disturbed.
+    pub(super) fn finish(mut self, to: &mut impl FnMut(Event<'_>)) -> Vec<Stretch> {
+        self.next_record(to);
+        self.stretches
+    }
+
+    /// A window is complete.
+    fn close(&mut self, to: &mut impl FnMut(Event<'_>)) {
+        if self.open.is_empty() {
+            return;
+        }
+        let mut window = std::mem::replace(&mut self.open, self.spare.pop().unwrap_or_default());
+        window.start = self.position;
+        self.position += window.length;
+        window.statistics = self
+            .limits
+            .and_then(|limits| WindowStatistics::of(&window.values, self.window, &limits));
+        if let Some(statistics) = window.statistics {
+            let apart = window.pieces.iter().any(|piece| matches!(piece, Piece::Restart));
+            self.usual.push(statistics, apart);
+            self.windows += 1;
+        }
+        self.waiting.push_back(window);
+        if self.judged {
+            if self.windows.is_multiple_of(RELEARN) {
+                self.usual.learn();
+            }
+            self.judge_last();
+        } else if self.waiting.len() >= START {
+            self.judge_all();
+        }
+        self.release(false, to);
+    }
+
+    /// Judges the windows that have waited for that.
+    fn judge_all(&mut self) {
+        self.judged = true;
+        self.usual.learn();
+        let waiting = std::mem::take(&mut self.waiting);
+        self.usual.rewind(waiting.iter().filter(|window| window.statistics.is_some()).count());
+        for window in waiting {
+            if window.statistics.is_some() {
+                self.usual.step();
+            }
+            self.waiting.push_back(window);
+            self.judge_last();
+        }
+    }
+
+    /// Judges the last window, in the light of those before it.
+    fn judge_last(&mut self) {
+        let last = self.waiting.len() - 1;
+        let has = self.waiting.back().is_some_and(|window| window.statistics.is_some());
+        let alone = has && self.usual.last_is_disturbed();
+        let group = has && self.usual.group_is_disturbed();
+        let from = if group {
+            last.saturating_sub(GROUP)
+        } else if alone {
+            last.saturating_sub(1)
+        } else {
+            last
+        };
+        let own = alone || group || self.follows;
+        for window in self.waiting.iter_mut().skip(from) {
+            window.disturbed |= own;
+        }
+        // A window without statistics hands the verdict on.
+        self.follows = alone || group || (self.follows && !has);
+    }
+
+    /// Hands on windows that nothing can condemn any more.
+    fn release(&mut self, at_end: bool, to: &mut impl FnMut(Event<'_>)) {
+        if !self.judged && !at_end {
+            return;
+        }
+        let wait = if at_end { 0 } else { WAIT };
+        while self.waiting.len() > wait {
+            let disturbed = self.waiting.front().is_some_and(|window| window.disturbed);
+            if !disturbed && let Some(gap) = self.left_out {
+                let ready = self.waiting.len() - wait;
+                let still = self.waiting.iter().take(ready).take_while(|w| !w.disturbed).count();
+                if still == ready && still < LEVEL && !at_end {
+                    return;
+                }
+                self.bridge(gap, still, to);
+            }
+            let Some(window) = self.waiting.pop_front() else { return };
+            if disturbed {
+                self.leave_out(&window, to);
+            } else {
+                window.tell(to);
+                if let Some(statistics) = window.statistics {
+                    if self.before.len() == LEVEL {
+                        self.before.pop_front();
+                    }
+                    self.before.push_back(statistics.mean);
+                }
+            }
+            self.reuse(window);
+        }
+    }
+
+    /// Time passes in which the sensor was not at rest.
+    fn leave_out(&mut self, window: &Window, to: &mut impl FnMut(Event<'_>)) {
+        let stretch = Stretch { from: window.start, to: window.start + window.length };
+        let room = self.stretches.len() < LISTED;
+        match self.stretches.last_mut() {
+            Some(last) if last.to == stretch.from => last.to = stretch.to,
+            _ if room => self.stretches.push(stretch),
+            _ => {}
+        }
+        if self.keep_all {
+            window.tell(to);
+            return;
+        }
+        self.restarted |= window.pieces.iter().any(|piece| matches!(piece, Piece::Restart));
+        *self.left_out.get_or_insert(0) += window.length;
+    }
+
+    /// Ends a stretch that was left out, before the `still` windows that wait at the front.
+    fn bridge(&mut self, gap: u64, still: usize, to: &mut impl FnMut(Event<'_>)) {
+        self.left_out = None;
+        let means = |w: &Window| w.statistics.map(|statistics| statistics.mean);
+        let after: Vec<[f64; 3]> =
+            self.waiting.iter().take(still.min(LEVEL)).filter_map(means).collect();
+        let many = after.len().min(self.before.len());
+        let apart = gap.div_ceil(self.window.max(1) as u64) as usize;
+        let same = many >= FEWEST_FOR_LEVEL && {
+            let before = self.before.iter().rev().take(many).copied();
+            let after = after.iter().take(many).copied();
+            self.usual.same_level(before, after, many, apart, apart + self.waiting.len())
+        };
+        let restart = std::mem::take(&mut self.restarted) || !same;
+        if restart {
+            to(Event::Restart);
+            self.before.clear();
+        } else {
+            to(Event::Missing(gap));
+        }
+    }
+
+    fn reuse(&mut self, mut window: Window) {
+        if self.spare.len() < 2 * WAIT {
+            window.pieces.clear();
+            window.values.clear();
+            window.length = 0;
+            window.statistics = None;
+            window.disturbed = false;
+            self.spare.push(window);
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "stillness_tests.rs"]
+mod tests;
