@@ -24,18 +24,24 @@ mod drift;
 pub mod five_terms;
 mod gravity;
 pub mod maximum_likelihood;
+mod refusal;
 mod sensor;
 pub mod slope;
 mod stillness;
+mod temperature;
 mod usual;
+mod window;
 
 pub use checks::Checks;
+pub use temperature::TemperatureRange;
 
 use imu_core::allan::{Contradiction, Octave, Parameter};
 
 use crate::error::Error;
-use crate::recording::{Block, Note, Sample, Source, Summary, read_ahead};
+use crate::recording::{Note, Source, Stream, Summary, read_ahead};
 use sensor::Pipeline;
+use temperature::Thermometer;
+use window::Window;
 
 /// Octaves of τ that a ladder holds here: at 1 kHz the longest is 12 days.
 pub const LEVELS: usize = 31;
@@ -194,11 +200,43 @@ pub fn calibrate(
     source: Box<dyn Source>,
     path: &str,
     options: &Options,
-    mut progress: impl FnMut(Progress),
+    progress: impl FnMut(Progress),
 ) -> Result<Calibration, Error> {
+    let Examined { calibration, refusal, .. } = examine(source, path, options, progress)?;
+    match refusal {
+        Some(refusal) => Err(refusal),
+        None => Ok(calibration),
+    }
+}
+
+/// Everything that a recording shows.
+#[derive(Debug)]
+pub struct Examined {
+    /// Its noise, for what it is worth, and what is wrong with it.
+    pub calibration: Calibration,
+    /// Why it is not fit to calibrate from.
+    pub refusal: Option<Error>,
+    /// What it holds, IMU or not.
+    pub streams: Vec<Stream>,
+    /// What a thermometer said.
+    pub temperature: Option<TemperatureRange>,
+}
+
+/// Reads a recording as [`calibrate`] does, and says all that there is to say of it, even if it is
+/// not fit to calibrate from.
+///
+/// # Errors
+/// What the source says when it cannot be read.
+pub fn examine(
+    source: Box<dyn Source>,
+    path: &str,
+    options: &Options,
+    mut progress: impl FnMut(Progress),
+) -> Result<Examined, Error> {
     let mut window = Window::new(options);
     let mut gyroscope = Pipeline::new(SensorKind::Gyroscope, options);
     let mut accelerometer = Pipeline::new(SensorKind::Accelerometer, options);
+    let mut temperature = Thermometer::default();
     let mut samples = 0;
     let mut record = 0;
     let mut source = read_ahead(source, |block, at| {
@@ -211,6 +249,7 @@ pub fn calibrate(
         window.open(block);
         gyroscope.push(window.cut(&block.gyroscope));
         accelerometer.push(window.cut(&block.accelerometer));
+        temperature.push(&block.temperature);
         samples += block.gyroscope.len().max(block.accelerometer.len()) as u64;
         progress(Progress { bytes: at.bytes, samples });
         Ok(())
@@ -225,39 +264,14 @@ pub fn calibrate(
     }
     let gyroscope = gyroscope.finish(source.gyroscope());
     let accelerometer = accelerometer.finish(source.accelerometer());
-    let most = [&gyroscope, &accelerometer]
-        .iter()
-        .filter_map(|sensor| sensor.as_ref().map(|s| s.stamps.samples - s.rejected))
-        .max()
-        .unwrap_or(0);
-    if most < FEWEST_SAMPLES {
-        return Err(too_few(path, most, options));
-    }
-    for sensor in [&gyroscope, &accelerometer].into_iter().flatten() {
-        if sensor.stamps.rate_hz <= 0.0 && sensor.stamps.samples > 1 {
-            return Err(Error::data(format!(
-                "{path}: the stamps of the {} never increase, so it has no rate: name the right column \
-                 of time with --columns, or try --bag-time for a bag",
-                sensor.kind.name()
-            )));
-        }
-        if sensor.rejected * 10 > sensor.stamps.samples {
-            return Err(Error::data(format!(
-                "{path}: {} of {} samples of the {} are not finite or far beyond what its first ones \
-                 show; leave out its beginning with --from, or mend the recording",
-                sensor.rejected,
-                sensor.stamps.samples,
-                sensor.kind.name()
-            )));
-        }
-    }
+    let mut refusal = refusal::of_samples(path, &gyroscope, &accelerometer, options);
     for (record, mean) in accelerometer.iter().flat_map(|sensor| &sensor.record_means) {
         let name = source.record_name(*record);
         match gravity::check(*mean) {
             gravity::Verdict::Plausible => {}
             gravity::Verdict::OtherUnit(sentence) if !options.unit_is_given => {
                 let name = name.as_deref().unwrap_or(path);
-                return Err(Error::data(format!("{name}: {sentence}")));
+                refusal.get_or_insert(Error::data(format!("{name}: {sentence}")));
             }
             gravity::Verdict::OtherUnit(sentence) | gravity::Verdict::Odd(sentence) => {
                 warnings.push(match name {
@@ -271,7 +285,7 @@ pub fn calibrate(
         warnings.extend(advice::warnings(sensor, options.keep_all));
     }
     let span = |sensor: &Option<SensorNoise>| sensor.as_ref().map_or(0.0, |s| s.stamps.span_s);
-    Ok(Calibration {
+    let calibration = Calibration {
         path: path.to_owned(),
         paths: vec![path.to_owned()],
         span_s: span(&gyroscope).max(span(&accelerometer)),
@@ -279,58 +293,7 @@ pub fn calibrate(
         warnings,
         gyroscope,
         accelerometer,
-    })
-}
-
-/// Fewer good samples than this are no recording: not even N has an interval worth the name.
-const FEWEST_SAMPLES: u64 = 32;
-
-fn too_few(path: &str, samples: u64, options: &Options) -> Error {
-    let cut = options.from_s.is_some() || options.to_s.is_some();
-    let within = if cut { " between --from and --to" } else { "" };
-    Error::data(format!(
-        "{path} has only {samples} usable samples{within}: record the sensor at rest for at least \
-         a minute (for the random walk of the bias: hours)"
-    ))
-}
-
-/// The part of each record between --from and --to.
-struct Window {
-    from_ns: i64,
-    to_ns: i64,
-    first: Option<i64>,
-}
-
-impl Window {
-    fn new(options: &Options) -> Self {
-        let ns = |s: f64| (s * 1e9) as i64; // saturates
-        Self {
-            from_ns: options.from_s.map_or(i64::MIN, ns),
-            to_ns: options.to_s.map_or(i64::MAX, ns),
-            first: None,
-        }
-    }
-
-    /// Notes where the recording begins.
-    fn open(&mut self, block: &Block) {
-        if self.first.is_none() {
-            let first = [block.gyroscope.first(), block.accelerometer.first()];
-            self.first = first.into_iter().flatten().map(|sample| sample.stamp_ns).min();
-        }
-    }
-
-    /// The samples of a block that lie within.
-    fn cut<'a>(&self, samples: &'a [Sample]) -> &'a [Sample] {
-        let Some(first) = self.first else { return samples };
-        if self.from_ns == i64::MIN && self.to_ns == i64::MAX {
-            return samples;
-        }
-        let within = |sample: &Sample| {
-            let at = sample.stamp_ns.saturating_sub(first);
-            at >= self.from_ns && at <= self.to_ns
-        };
-        let start = samples.iter().position(within).unwrap_or(samples.len());
-        let end = samples.iter().rposition(within).map_or(start, |last| last + 1);
-        samples.get(start..end).unwrap_or_default()
-    }
+    };
+    let streams = source.streams();
+    Ok(Examined { calibration, refusal, streams, temperature: temperature.range() })
 }

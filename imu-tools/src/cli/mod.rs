@@ -7,6 +7,7 @@
 mod calibrate;
 mod convert;
 mod demo;
+mod info;
 mod progress;
 mod reading;
 mod simulate;
@@ -35,6 +36,7 @@ enum Command {
     Calibrate(calibrate::Calibrate),
     Convert(convert::Convert),
     Demo(demo::Demo),
+    Info(info::Info),
     Simulate(simulate::Simulate),
 }
 
@@ -54,6 +56,7 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Calibrate(calibrate) => calibrate.run(),
         Command::Convert(convert) => convert.run(),
         Command::Demo(demo) => demo.run(),
+        Command::Info(info) => info.run(),
         Command::Simulate(simulate) => simulate.run(),
     };
     match result {

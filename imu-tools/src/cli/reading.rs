@@ -42,17 +42,23 @@ pub(super) struct Opened {
 impl Reading {
     /// Opens a file, or several as one recording.
     pub(super) fn open(&self, files: &[PathBuf]) -> Result<Opened, Error> {
+        Self::open_with(files, &self.options())
+    }
+
+    /// Opens for somebody who wants to know what is there: several IMUs are no error.
+    pub(super) fn survey(&self, files: &[PathBuf]) -> Result<Opened, Error> {
+        Self::open_with(files, &ReadOptions { survey: true, ..self.options() })
+    }
+
+    fn open_with(files: &[PathBuf], options: &ReadOptions) -> Result<Opened, Error> {
         if let [file] = files {
             let name = match file.to_str() {
                 Some("-") => "the pipe".to_owned(),
                 _ => file.display().to_string(),
             };
-            return Ok(Opened {
-                source: recording::open(file, &self.options())?,
-                names: vec![name],
-            });
+            return Ok(Opened { source: recording::open(file, options)?, names: vec![name] });
         }
-        let joined = Joined::open(files, &self.options())?;
+        let joined = Joined::open(files, options)?;
         let names = joined.names().to_vec();
         Ok(Opened { source: Box::new(joined), names })
     }

@@ -5,6 +5,7 @@
 
 pub mod csv;
 pub mod demo;
+pub mod info;
 pub mod json;
 pub mod table;
 mod units;
