@@ -93,6 +93,11 @@ fn json_has_the_documented_shape() {
     for calibration in [&long, &short] {
         let mut found = Vec::new();
         nulls(calibration, String::new(), &mut found);
+        // What was looked for and is not there.
+        found.retain(|place| {
+            !["/warm_up_s", "/ramp_per_s"].iter().any(|name| place.ends_with(name))
+                && !place.contains("/checks/step/")
+        });
         assert_eq!(found, Vec::<String>::new());
         let has = |value: &Value, names: &[&str]| {
             for name in names {
