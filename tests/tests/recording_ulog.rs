@@ -22,11 +22,11 @@ struct Outcome {
 
 impl Outcome {
     fn warnings(&self) -> Vec<&str> {
-        let warning = |note| match note {
-            &Note::Warning(ref text) => Some(text.as_str()),
+        let warnings = self.notes.iter().filter_map(|note| match note {
+            Note::Warning(text) => Some(text.as_str()),
             Note::Info(_) => None,
-        };
-        self.notes.iter().filter_map(warning).collect()
+        });
+        warnings.collect()
     }
 }
 
