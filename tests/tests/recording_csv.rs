@@ -149,7 +149,6 @@ fn faults_name_file_line_and_column() {
         ("t [min],gx,gy,gz\n0,1,2,3\n", &["'t [min]'", "--time-unit"]),
         ("t,ax [ft/s2],ay,az\n0,1,2,3\n", &["'ft/s2'", "--accel-unit"]),
         ("t,gx [deg/s],gy [rad/s],gz\n0,1,2,3\n", &["'gy [rad/s]'", "--gyro-unit"]),
-        ("t,gx,gy,gz\r0,1,2,3\r1,1,2,3\r", &["CR alone"]),
         ("hello world\n", &["no row of numbers"]),
         ("", &["empty"]),
         ("\n\n", &["no row of numbers"]),

@@ -20,6 +20,9 @@ pub(super) struct Reading {
     /// Columns of a CSV: t, gx, gy, gz, ax, ay, az and - for one to pass over
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     columns: Option<String>,
+    /// Columns of a CSV by name: t=stamp,gx=omega.x,… (also sec and nsec, or date and t; temp)
+    #[arg(long, value_name = "KEY=NAME,…", conflicts_with = "columns")]
+    map: Option<String>,
     /// Unit of angular rate: rad/s, mrad/s, deg/s, mdeg/s, deg/h
     #[arg(long, value_name = "UNIT")]
     gyro_unit: Option<RateUnit>,
@@ -70,6 +73,7 @@ impl Reading {
             survey: false,
             bag_time: self.bag_time,
             columns: self.columns.clone(),
+            map: self.map.clone(),
             gyro_unit: self.gyro_unit,
             accel_unit: self.accel_unit,
             time_unit: self.time_unit,

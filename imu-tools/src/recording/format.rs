@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::str::FromStr;
 
+use super::euroc::is_folder_name;
 use crate::error::Error;
 
 /// A format that can be written.
@@ -14,23 +15,30 @@ pub enum Format {
     Mcap,
     /// A table in text.
     Csv,
+    /// EuRoC's folders.
+    Euroc,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Bag, Self::Mcap, Self::Csv];
+    pub const ALL: [Self; 4] = [Self::Bag, Self::Mcap, Self::Csv, Self::Euroc];
 
-    /// The word for it, which is also the ending of its files.
+    /// Those that are one file.
+    const FILES: [Self; 3] = [Self::Bag, Self::Mcap, Self::Csv];
+
+    /// The word for it, which is also the ending of its files where it is one file.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bag => "bag",
             Self::Mcap => "mcap",
             Self::Csv => "csv",
+            Self::Euroc => "euroc",
         }
     }
 
-    /// The format that a file of this name would have; `-`, a pipe, is a CSV.
+    /// The format that a file of this name would have; `-`, a pipe, is a CSV, and a path that ends
+    /// in `/` or `mav0` is EuRoC's.
     ///
     /// # Errors
     /// When the name has another ending.
@@ -38,13 +46,17 @@ impl Format {
         if path == Path::new("-") {
             return Ok(Self::Csv);
         }
+        if is_folder_name(path) {
+            return Ok(Self::Euroc);
+        }
         let ending = path.extension().and_then(|ending| ending.to_str());
         let found = ending.and_then(|ending| ending.to_lowercase().parse().ok());
         found.ok_or_else(|| {
             Error::usage(format!(
-                "cannot tell the format of {} from its name: end it with {}",
+                "cannot tell the format of {} from its name: end it with {}, or with / for \
+                 EuRoC's folders",
                 path.display(),
-                list(".")
+                list(".", &Self::FILES)
             ))
         })
     }
@@ -55,17 +67,17 @@ impl FromStr for Format {
 
     fn from_str(name: &str) -> Result<Self, String> {
         let found = Self::ALL.into_iter().find(|format| format.name() == name);
-        found.ok_or_else(|| format!("the formats that can be written are {}", list("")))
+        found.ok_or_else(|| format!("the formats that can be written are {}", list("", &Self::ALL)))
     }
 }
 
-/// All names, each after `before`: `.bag or .csv`.
-fn list(before: &str) -> String {
+/// The names of `formats`, each after `before`: `.bag or .csv`.
+fn list(before: &str, formats: &[Format]) -> String {
     let mut text = String::new();
-    for (at, format) in Format::ALL.into_iter().enumerate() {
+    for (at, format) in formats.iter().enumerate() {
         text += match at {
             0 => "",
-            at if at + 1 == Format::ALL.len() => " or ",
+            at if at + 1 == formats.len() => " or ",
             _ => ", ",
         };
         text += before;
@@ -82,11 +94,16 @@ mod tests {
     fn names_lead_to_formats_and_back() {
         for format in Format::ALL {
             assert_eq!(format.name().parse(), Ok(format));
+        }
+        for path in ["out/", "out/mav0", "mav0"] {
+            assert_eq!(Format::of(Path::new(path)).unwrap(), Format::Euroc);
+        }
+        for format in Format::FILES {
             assert_eq!(Format::of(Path::new(&format!("a.b.{}", format.name()))).unwrap(), format);
         }
         assert_eq!(Format::of(Path::new("A.BAG")).unwrap(), Format::Bag);
         let error = Format::of(Path::new("a.xyz")).unwrap_err();
         assert_eq!(error.exit_code(), 2);
-        assert!(error.to_string().ends_with(&list(".")), "{error}");
+        assert!(error.to_string().contains(&list(".", &Format::FILES)), "{error}");
     }
 }

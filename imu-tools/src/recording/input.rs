@@ -6,6 +6,8 @@
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::inside::{Compression, Inside};
 use crate::error::Error;
@@ -39,6 +41,8 @@ pub struct Input {
     end: usize,
     /// Offset in the file of `buffer[start]`.
     offset: u64,
+    /// Set when the bytes end where they should not.
+    broken_off: Arc<AtomicBool>,
 }
 
 impl Input {
@@ -64,8 +68,30 @@ impl Input {
         Self::new(path, From::Pipe(stream))
     }
 
+    /// Reads what is unpacked from another input; `broken_off` is set when that ends too early.
+    pub fn unpacked(
+        path: &Path,
+        stream: Box<dyn Read + Send>,
+        broken_off: Arc<AtomicBool>,
+    ) -> Self {
+        Self { broken_off, ..Self::pipe(path, stream) }
+    }
+
     fn new(path: &Path, from: From) -> Self {
-        Self { path: path.to_owned(), from, buffer: vec![0; BUFFER], start: 0, end: 0, offset: 0 }
+        Self {
+            path: path.to_owned(),
+            from,
+            buffer: vec![0; BUFFER],
+            start: 0,
+            end: 0,
+            offset: 0,
+            broken_off: Arc::default(),
+        }
+    }
+
+    /// The end that was reached is no end: the file was packed, and damage was found there.
+    pub fn is_broken_off(&self) -> bool {
+        self.broken_off.load(Ordering::Relaxed)
     }
 
     /// The name that errors call this by.
@@ -111,6 +137,7 @@ impl Input {
             start: 0,
             end: 0,
             offset: 0,
+            broken_off: Arc::default(),
         };
         let outer = std::mem::replace(self, empty);
         self.from = From::Inside(Box::new(Inside::new(outer, len, compression)));

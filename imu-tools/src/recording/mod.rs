@@ -32,11 +32,15 @@ mod align;
 pub mod bag;
 mod convert;
 pub mod csv;
+pub mod euroc;
+mod folder;
 mod format;
 mod input;
 mod inside;
 mod joined;
 pub mod mcap;
+mod noted;
+pub mod poses;
 mod ros2;
 pub mod timeline;
 mod topics;
@@ -197,6 +201,8 @@ pub struct ReadOptions {
     pub bag_time: bool,
     /// Columns of a CSV, such as `t,gx,gy,gz,ax,ay,az,-`. `None` finds them.
     pub columns: Option<String>,
+    /// Columns of a CSV by their names, such as `t=stamp,gx=omega.x`.
+    pub map: Option<String>,
     /// Unit of the angular rates. `None` finds it in a CSV's header, or takes rad/s.
     pub gyro_unit: Option<RateUnit>,
     /// Unit of the specific forces. `None` finds it in a CSV's header, or takes m/s².
@@ -205,12 +211,16 @@ pub struct ReadOptions {
     pub time_unit: Option<TimeUnit>,
 }
 
-/// Opens the recording at `path` (`-` is a pipe), whatever its format: what it holds decides, not
-/// its name.
+/// Opens the recording at `path` (`-` is a pipe), a file or a folder, whatever its format: what it
+/// holds decides, not its name.
 ///
 /// # Errors
 /// When there is no such file, its format is unknown, or it holds no IMU.
 pub fn open(path: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Error> {
+    if path.is_dir() { folder::open(path, options) } else { open_file(path, options) }
+}
+
+fn open_file(path: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Error> {
     read_inside(Input::open(path)?, options)
 }
 
@@ -260,6 +270,9 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
             path.display()
         )));
     }
+    if options.columns.is_none() && options.map.is_none() && poses::Poses::are_in(&mut input)? {
+        return Err(poses::Poses::of(input)?.no_samples());
+    }
     Ok(Box::new(csv::CsvReader::open(input, options)?))
 }
 
@@ -280,6 +293,7 @@ pub fn create_as(path: &Path, format: Format) -> Result<Box<dyn Sink>, Error> {
         Format::Bag => Box::new(bag::BagWriter::create(path)?),
         Format::Mcap => Box::new(mcap::McapWriter::create(path)?),
         Format::Csv => Box::new(csv::CsvWriter::create(path)?),
+        Format::Euroc => Box::new(euroc::EurocWriter::create(path)?),
     })
 }
 

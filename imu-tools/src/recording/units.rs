@@ -9,6 +9,8 @@ pub enum TimeUnit {
     Seconds,
     /// ms
     Milliseconds,
+    /// 100 µs, the tick of Xsens' SampleTimeFine
+    HundredMicroseconds,
     /// µs
     Microseconds,
     /// ns
@@ -47,6 +49,7 @@ impl TimeUnit {
         match self {
             Self::Seconds => 9,
             Self::Milliseconds => 6,
+            Self::HundredMicroseconds => 5,
             Self::Microseconds => 3,
             Self::Nanoseconds => 0,
         }
@@ -57,6 +60,7 @@ impl TimeUnit {
         match self {
             Self::Seconds => "s",
             Self::Milliseconds => "ms",
+            Self::HundredMicroseconds => "100 µs",
             Self::Microseconds => "µs",
             Self::Nanoseconds => "ns",
         }
@@ -132,6 +136,7 @@ impl FromStr for TimeUnit {
         Ok(match plain(name).as_str() {
             "s" | "sec" | "secs" | "second" | "seconds" => Self::Seconds,
             "ms" | "msec" | "millisecond" | "milliseconds" => Self::Milliseconds,
+            "100us" | "100µs" => Self::HundredMicroseconds,
             "us" | "µs" | "usec" | "microsecond" | "microseconds" => Self::Microseconds,
             "ns" | "nsec" | "nanosecond" | "nanoseconds" => Self::Nanoseconds,
             _ => return Err(format!("'{name}' is no unit of time: use s, ms, us or ns")),

@@ -1,115 +1,70 @@
 //! What stands in which column: told by the user, by the header's names, or by custom.
 
-use std::str::FromStr;
-
+use super::names::Name;
+use super::told::Told;
 use crate::recording::{ForceUnit, RateUnit, TimeUnit};
-
-/// What separates fields.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Separator {
-    /// This byte, once.
-    Byte(u8),
-    /// Any number of blanks and tabs.
-    Blanks,
-}
-
-impl Separator {
-    /// The separator of a row of numbers.
-    pub fn of(row: &[u8]) -> Self {
-        let byte = [b';', b',', b'\t'].into_iter().find(|byte| row.contains(byte));
-        byte.map_or(Self::Blanks, Self::Byte)
-    }
-
-    /// The fields of a line, without blanks and quotes around them.
-    pub fn split(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
-        let mut rest = Some(line);
-        std::iter::from_fn(move || {
-            let mut line = rest?;
-            if self == Self::Blanks {
-                line = line.trim_ascii_start();
-                if line.is_empty() {
-                    return None;
-                }
-            }
-            let end = match self {
-                Self::Byte(byte) => memchr::memchr(byte, line),
-                Self::Blanks => memchr::memchr2(b' ', b'\t', line),
-            };
-            let field = line.get(..end.unwrap_or(line.len())).unwrap_or_default();
-            rest = end.and_then(|end| line.get(end + 1..));
-            Some(trim(field))
-        })
-    }
-}
-
-#[inline]
-fn trim(field: &[u8]) -> &[u8] {
-    let mut field = field.trim_ascii();
-    if let [b'"', inner @ .., b'"'] | [b'\'', inner @ .., b'\''] = field {
-        field = inner.trim_ascii();
-    }
-    field
-}
 
 /// The meaning of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Column {
     /// Of no interest.
     Other,
-    /// Time.
+    /// Time, in a unit or as a date.
     Time,
+    /// The whole seconds of a time in two columns.
+    Seconds,
+    /// The nanoseconds of a time in two columns.
+    Nanoseconds,
+    /// The day of a time that is a time of day.
+    Date,
     /// Angular rate about axis 0, 1, 2.
     Rate(u8),
     /// Specific force along axis 0, 1, 2.
     Force(u8),
+    /// Temperature.
+    Temperature,
 }
 
-/// What the names of columns say of their unit.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Told<U> {
-    /// Nothing.
-    #[default]
-    Nothing,
-    /// This unit.
-    Unit(U),
-    /// A unit that nobody knows, or two of them: what is wrong, in words.
-    Unclear(String),
+/// The sensor that a whole table is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sensor {
+    /// Angular rate.
+    Gyroscope,
+    /// Specific force.
+    Accelerometer,
 }
 
-impl<U: FromStr<Err = String> + Copy + PartialEq> Told<U> {
-    /// The unit given by the user, or else the one told.
-    ///
-    /// # Errors
-    /// What is wrong with the one told, in words.
-    pub fn unless(&self, given: Option<U>) -> Result<Option<U>, &str> {
-        match (given, self) {
-            (Some(given), _) => Ok(Some(given)),
-            (None, Self::Nothing) => Ok(None),
-            (None, Self::Unit(unit)) => Ok(Some(*unit)),
-            (None, Self::Unclear(what)) => Err(what),
-        }
+/// A scale of temperature: degrees Celsius are `factor` times what stands there, plus `zero`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Celsius {
+    /// Of one degree.
+    pub factor: f64,
+    /// Where the scale's zero is.
+    pub zero: f64,
+}
+
+impl Default for Celsius {
+    fn default() -> Self {
+        Self { factor: 1.0, zero: 0.0 }
     }
+}
 
-    /// Takes in what one column says; the first trouble stays.
-    fn hear(&mut self, column: &[u8], unit: Option<&str>) {
-        let unit = unit.unwrap_or_default().trim_matches(|c| "[]() ".contains(c));
-        if unit.is_empty() || matches!(self, Self::Unclear(_)) {
-            return;
+impl Celsius {
+    /// The scale of that name; `None` for one that nobody knows.
+    fn of(unit: Option<&str>) -> Option<Self> {
+        let letters = unit.unwrap_or_default().to_lowercase();
+        let letters: String = letters.chars().filter(|c| c.is_alphabetic()).collect();
+        match letters.trim_start_matches("deg") {
+            "" | "c" | "celsius" | "cel" => Some(Self::default()),
+            "k" | "kelvin" => Some(Self { factor: 1.0, zero: -273.15 }),
+            "f" | "fahrenheit" => Some(Self { factor: 5.0 / 9.0, zero: -160.0 / 9.0 }),
+            _ => None,
         }
-        let unclear =
-            |what| Self::Unclear(format!("column '{}': {what}", String::from_utf8_lossy(column)));
-        *self = match unit.parse() {
-            Err(what) => unclear(what),
-            Ok(unit) if matches!(self, Self::Unit(other) if *other != unit) => {
-                unclear("its unit is not that of the sensor's other axes".into())
-            }
-            Ok(unit) => Self::Unit(unit),
-        };
     }
 }
 
 /// Meanings of all columns, and the units that their names tell.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Columns {
     /// From the first to the last of interest.
     pub columns: Vec<Column>,
@@ -119,7 +74,29 @@ pub struct Columns {
     pub rate: Told<RateUnit>,
     /// Unit of specific force.
     pub force: Told<ForceUnit>,
+    /// Scale of temperature.
+    pub celsius: Celsius,
 }
+
+/// The column that a user calls by this key.
+fn by_key(key: &str) -> Option<Column> {
+    Some(match key.trim() {
+        "t" => Column::Time,
+        "sec" => Column::Seconds,
+        "nsec" => Column::Nanoseconds,
+        "date" => Column::Date,
+        "gx" => Column::Rate(0),
+        "gy" => Column::Rate(1),
+        "gz" => Column::Rate(2),
+        "ax" => Column::Force(0),
+        "ay" => Column::Force(1),
+        "az" => Column::Force(2),
+        "temp" => Column::Temperature,
+        _ => return None,
+    })
+}
+
+const KEYS: &str = "t, sec, nsec, date, gx, gy, gz, ax, ay, az, temp";
 
 impl Columns {
     /// The order of tables without a header: t, gx, gy, gz, ax, ay, az.
@@ -130,60 +107,161 @@ impl Columns {
         Self { columns: columns.collect(), ..Self::default() }
     }
 
+    /// The 40 columns of `ros2 topic echo --csv` for a sensor_msgs/msg/Imu, which has no header:
+    /// stamp, frame, orientation, three vectors, each followed by nine of its covariance.
+    pub fn of_ros2_echo() -> Self {
+        let mut columns = vec![Column::Other; 37];
+        let places = [
+            (0, Column::Seconds),
+            (1, Column::Nanoseconds),
+            (16, Column::Rate(0)),
+            (17, Column::Rate(1)),
+            (18, Column::Rate(2)),
+            (28, Column::Force(0)),
+            (29, Column::Force(1)),
+            (30, Column::Force(2)),
+        ];
+        for (at, column) in places {
+            if let Some(place) = columns.get_mut(at) {
+                *place = column;
+            }
+        }
+        columns.truncate(31);
+        Self {
+            columns,
+            rate: Told::Unit(RateUnit::RadPerS),
+            force: Told::Unit(ForceUnit::MPerS2),
+            ..Self::default()
+        }
+    }
+
     /// From a specification such as `t,gx,gy,gz,ax,ay,az,-`.
     ///
     /// # Errors
     /// What is wrong with it, in words.
     pub fn from_spec(spec: &str) -> Result<Self, String> {
-        let column = |name: &str| match name.trim() {
-            "t" => Ok(Column::Time),
-            "gx" => Ok(Column::Rate(0)),
-            "gy" => Ok(Column::Rate(1)),
-            "gz" => Ok(Column::Rate(2)),
-            "ax" => Ok(Column::Force(0)),
-            "ay" => Ok(Column::Force(1)),
-            "az" => Ok(Column::Force(2)),
+        let column = |key: &str| match key.trim() {
             "-" => Ok(Column::Other),
-            name => Err(format!("'{name}' is none of t, gx, gy, gz, ax, ay, az and -")),
+            key => by_key(key).ok_or_else(|| format!("'{key}' is none of {KEYS} and -")),
         };
         let columns = spec.split(',').map(column).collect::<Result<_, _>>()?;
         Self { columns, ..Self::default() }.checked()
     }
 
-    /// From the names of a header.
+    /// From names of columns that the user gives, such as `t=stamp,gx=omega.x`.
+    ///
+    /// # Errors
+    /// What is wrong with them, in words: with a name that is not there, those that are.
+    pub fn from_map(map: &str, names: &[&[u8]]) -> Result<Self, String> {
+        let texts: Vec<String> =
+            names.iter().map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect();
+        let mut found = Self { columns: vec![Column::Other; names.len()], ..Self::default() };
+        for pair in map.split(',') {
+            let (key, wanted) = pair
+                .split_once('=')
+                .ok_or_else(|| format!("'{pair}' is no pair such as gx=omega.x"))?;
+            let column = by_key(key).ok_or_else(|| format!("'{key}' is none of {KEYS}"))?;
+            let wanted = wanted.trim();
+            let bare = |text: &str| {
+                text.split(['[', '(']).next().unwrap_or(text).trim().eq_ignore_ascii_case(wanted)
+            };
+            let at = texts
+                .iter()
+                .position(|text| text == wanted)
+                .or_else(|| texts.iter().position(|text| text.eq_ignore_ascii_case(wanted)))
+                .or_else(|| texts.iter().position(|text| bare(text)));
+            let Some(at) = at else {
+                return Err(format!("there is no column '{wanted}', only {}", listed(&texts)));
+            };
+            match found.columns.get_mut(at) {
+                Some(place @ Column::Other) => *place = column,
+                _ => return Err(format!("column '{wanted}' is given twice")),
+            }
+            let text = names.get(at).copied().unwrap_or_default();
+            found.hear(column, text, Name::new(text).unit.as_deref());
+        }
+        found.checked()
+    }
+
+    /// From the names of a header; axes without a sensor are those of `hint`.
     ///
     /// # Errors
     /// What is missing, in words.
-    pub fn from_names<'a>(names: impl Iterator<Item = &'a [u8]>) -> Result<Self, String> {
+    pub fn from_names(names: &[&[u8]], hint: Option<Sensor>) -> Result<Self, String> {
+        let parts: Vec<Name> = names.iter().map(|text| Name::new(text)).collect();
         let mut found = Self::default();
-        for text in names {
-            let name = Name::new(text);
-            let column = name.meaning();
-            let unit = name.unit.as_deref();
-            let taken = column != Column::Other && found.columns.contains(&column);
-            match column {
-                _ if taken => {}
-                Column::Time => found.time.hear(text, unit),
-                Column::Rate(_) => found.rate.hear(text, unit),
-                Column::Force(_) => found.force.hear(text, unit),
-                Column::Other => {}
+        let time = time_among(&parts);
+        for (at, (text, name)) in names.iter().zip(&parts).enumerate() {
+            let mut column = match name.meaning(hint) {
+                Column::Time => Column::Other,
+                column => column,
+            };
+            if let Some(&(_, part)) = time.iter().find(|(place, _)| *place == at) {
+                column = part;
             }
-            found.columns.push(if taken { Column::Other } else { column });
+            if column != Column::Other && found.columns.contains(&column) {
+                column = Column::Other;
+            }
+            if column == Column::Temperature && Celsius::of(name.unit.as_deref()).is_none() {
+                column = Column::Other;
+            }
+            found.hear(column, text, name.unit.as_deref());
+            found.columns.push(column);
         }
         found.checked()
+    }
+
+    /// Takes in the unit that a column's name tells.
+    fn hear(&mut self, column: Column, name: &[u8], unit: Option<&str>) {
+        match column {
+            Column::Time => self.time.hear(name, unit),
+            Column::Rate(_) => self.rate.hear(name, unit),
+            Column::Force(_) => self.force.hear(name, unit),
+            Column::Temperature => self.celsius = Celsius::of(unit).unwrap_or_default(),
+            Column::Seconds | Column::Nanoseconds | Column::Date | Column::Other => {}
+        }
+    }
+
+    /// Takes in a row of units; `false`, and nothing happens, when it is none.
+    pub fn hear_units(&mut self, row: &[&[u8]]) -> bool {
+        let texts: Vec<_> = row.iter().map(|field| String::from_utf8_lossy(field)).collect();
+        let bare = |text: &str| text.trim_matches(|c| "[]() ".contains(c)).to_owned();
+        let columns = self.columns.clone();
+        let pairs = || columns.iter().zip(&texts);
+        let known = pairs().filter(|(column, text)| match column {
+            Column::Time => bare(text).parse::<TimeUnit>().is_ok(),
+            Column::Rate(_) => bare(text).parse::<RateUnit>().is_ok(),
+            Column::Force(_) => bare(text).parse::<ForceUnit>().is_ok(),
+            _ => false,
+        });
+        if known.count() < 3 {
+            return false;
+        }
+        for (column, text) in pairs() {
+            self.hear(*column, text.as_bytes(), Some(text));
+        }
+        true
     }
 
     /// Time once and at least one whole sensor.
     fn checked(mut self) -> Result<Self, String> {
         let count = |column: Column| self.columns.iter().filter(|&&c| c == column).count();
         let axes = |column: fn(u8) -> Column| [0, 1, 2].map(|axis| count(column(axis)));
-        match (count(Column::Time), axes(Column::Rate), axes(Column::Force)) {
-            (0, ..) => return Err("there is no column of time".into()),
-            (1, [1, 1, 1], [1, 1, 1] | [0, 0, 0]) | (1, [0, 0, 0], [1, 1, 1]) => {}
-            (1, [0, 0, 0], [0, 0, 0]) => {
+        let time = [Column::Time, Column::Date, Column::Seconds, Column::Nanoseconds].map(count);
+        match time {
+            [0, _, 0, 0] => return Err("there is no column of time".into()),
+            [1, 0 | 1, 0, 0] | [0, 0, 1, 1] => {}
+            _ => return Err("time needs one column, or sec and nsec, or date and t".into()),
+        }
+        match (axes(Column::Rate), axes(Column::Force)) {
+            ([1, 1, 1], [1, 1, 1] | [0, 0, 0]) | ([0, 0, 0], [1, 1, 1]) => {}
+            ([0, 0, 0], [0, 0, 0]) => {
                 return Err("there is no column of a gyroscope or accelerometer".into());
             }
             _ => return Err("each sensor needs its x, y and z, each once".into()),
+        }
+        if count(Column::Temperature) > 1 {
+            return Err("there can be one temperature".into());
         }
         while self.columns.last() == Some(&Column::Other) {
             self.columns.pop();
@@ -197,129 +275,47 @@ impl Columns {
     }
 }
 
-/// A column's name in parts.
-struct Name {
-    /// Words and single letters, in lower case.
-    words: Vec<String>,
-    unit: Option<String>,
-}
-
-/// Words that may precede an axis in one piece, as in `gyrox`.
-const GYROSCOPE: [&str; 9] =
-    ["gyro", "gyr", "gyroscope", "omega", "w", "g", "angularvelocity", "angvel", "rate"];
-const ACCELEROMETER: [&str; 8] =
-    ["accel", "acc", "accelerometer", "a", "linearacceleration", "acceleration", "linacc", "force"];
-
-/// Words of columns that hold something else about a sensor.
-const FOREIGN: [&str; 10] =
-    ["covariance", "cov", "bias", "std", "sigma", "b", "ref", "mag", "orientation", "temp"];
-
-impl Name {
-    fn new(name: &[u8]) -> Self {
-        let text = String::from_utf8_lossy(name);
-        let text = text.trim().trim_start_matches('%');
-        let (name, bracketed) = match text.find(['[', '(']) {
-            Some(at) => {
-                let (name, unit) = text.split_at(at);
-                (name, Some(unit.trim_end().to_owned()))
-            }
-            None => (text, None),
-        };
-        let mut words: Vec<String> = name
-            .split(|c: char| !c.is_alphanumeric())
-            .filter(|word| !word.is_empty())
-            .map(str::to_lowercase)
-            .collect();
-        // A unit may also follow the name: time_ns, gyro_x_rad_s.
-        let mut unit = bracketed;
-        if unit.is_none() {
-            let last = words.iter().rposition(|w| axis(w).is_some() || is_time(w)).map(|at| at + 1);
-            if let Some(last) = last.filter(|&last| last < words.len()) {
-                unit = Some(quotient(&words.split_off(last)));
-            }
-        }
-        let mut name = Self { words, unit };
-        if name.unit.is_none() {
-            name.take_inner_unit();
-        }
-        name
+/// The columns that make up the time: two halves, or a day and a time of day, or the message's own
+/// stamp, or else the first.
+fn time_among(names: &[Name]) -> Vec<(usize, Column)> {
+    let half = |half: Column| names.iter().position(|name| name.half() == Some(half));
+    if let (Some(seconds), Some(nanoseconds)) = (half(Column::Seconds), half(Column::Nanoseconds)) {
+        return vec![(seconds, Column::Seconds), (nanoseconds, Column::Nanoseconds)];
     }
-
-    /// Takes out a unit between sensor and axis: gyro_dps_x, acc_m_s2_x.
-    fn take_inner_unit(&mut self) {
-        let Some((axis, before)) = self.words.split_last() else { return };
-        if !["x", "y", "z"].contains(&axis.as_str()) {
-            return;
+    let times = || names.iter().enumerate().filter(|(_, name)| name.meaning(None) == Column::Time);
+    let date = times().find(|(_, name)| name.is_date());
+    let best = times()
+        .find(|(_, name)| name.is_header_stamp())
+        .or_else(|| times().find(|(_, name)| !name.is_date()));
+    match (date, best) {
+        (Some((date, _)), Some((clock, _))) => {
+            vec![(date, Column::Date), (clock, Column::Time)]
         }
-        for at in 1..before.len() {
-            let (sensor, unit) = before.split_at(at);
-            let unit = quotient(unit);
-            if named(sensor, &GYROSCOPE) && unit.parse::<RateUnit>().is_ok()
-                || named(sensor, &ACCELEROMETER) && unit.parse::<ForceUnit>().is_ok()
-            {
-                self.words.drain(at..before.len());
-                self.unit = Some(unit);
-                return;
-            }
-        }
-    }
-
-    fn meaning(&self) -> Column {
-        let word = |list: &[&str]| self.words.iter().any(|w| list.contains(&w.as_str()));
-        if word(&FOREIGN) {
-            return Column::Other;
-        }
-        let Some(last) = self.words.last() else { return Column::Other };
-        if is_time(last) {
-            return Column::Time;
-        }
-        let Some((stem, axis)) = axis(last) else { return Column::Other };
-        let mut stems = self.words.clone();
-        stems.pop();
-        stems.push(stem.to_owned());
-        match (named(&stems, &GYROSCOPE), named(&stems, &ACCELEROMETER)) {
-            (true, false) => Column::Rate(axis),
-            (false, true) => Column::Force(axis),
-            _ => Column::Other,
-        }
+        (Some((only, _)), None) | (None, Some((only, _))) => vec![(only, Column::Time)],
+        (None, None) => Vec::new(),
     }
 }
 
-/// Whether one of these words, or the last of them written as one, is of `list`.
-fn named(words: &[String], list: &[&str]) -> bool {
-    let one_piece = words.concat();
-    let tail = list.iter().filter(|w| w.len() > 3).any(|w| one_piece.ends_with(w));
-    tail || words.iter().any(|w| list.contains(&w.as_str()))
-}
-
-/// The unit that words of a name make up: `rad` and `s` are rad/s.
-fn quotient(words: &[String]) -> String {
-    match words {
-        [over, under] if !under.starts_with(|c: char| c.is_ascii_digit()) => {
-            format!("{over}/{under}")
-        }
-        words => words.concat(),
+/// Names for an error, not too many of them.
+fn listed(names: &[String]) -> String {
+    const MOST: usize = 40;
+    let shown: Vec<&str> =
+        names.iter().take(MOST).map(String::as_str).filter(|name| !name.is_empty()).collect();
+    let more = names.len().saturating_sub(MOST);
+    match more {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
     }
-}
-
-fn is_time(word: &str) -> bool {
-    ["t", "time", "timestamp", "timestamps", "stamp", "ts", "clock"].contains(&word)
-}
-
-/// The axis at the end of a word, and what stands before: `gyrox` is gyro and 0.
-fn axis(word: &str) -> Option<(&str, u8)> {
-    let stem = word.strip_suffix(['x', 'y', 'z'])?;
-    let axis = word.bytes().last()?.checked_sub(b'x')?;
-    let known = stem.is_empty() || GYROSCOPE.contains(&stem) || ACCELEROMETER.contains(&stem);
-    known.then_some((stem, axis))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recording::csv::dialect::Dialect;
 
     fn named(header: &str) -> Result<Columns, String> {
-        Columns::from_names(Separator::Byte(b',').split(header.as_bytes()))
+        let names: Vec<&[u8]> = Dialect::of(header.as_bytes()).fields(header.as_bytes()).collect();
+        Columns::from_names(&names, None)
     }
 
     fn told<U>(unit: Option<U>) -> Told<U> {
@@ -393,7 +389,8 @@ mod tests {
             ),
         ] {
             let (time, rate, force) = (told(time), told(rate), told(force));
-            let expected = Columns { columns: customary.columns.clone(), time, rate, force };
+            let columns = customary.columns.clone();
+            let expected = Columns { columns, time, rate, force, celsius: Celsius::default() };
             assert_eq!(named(header), Ok(expected), "{header}");
         }
     }
@@ -418,11 +415,11 @@ mod tests {
              field.linear_acceleration.y,field.linear_acceleration.z,mag_x,b_w_RS_S_x,temp",
         )
         .unwrap();
-        use Column::{Force, Other, Rate, Time};
+        use Column::{Force, Other, Rate, Temperature, Time};
         let expected = [
             Other,
-            Time,
             Other,
+            Time,
             Other,
             Rate(0),
             Rate(1),
@@ -431,6 +428,9 @@ mod tests {
             Force(0),
             Force(1),
             Force(2),
+            Other,
+            Other,
+            Temperature,
         ];
         assert_eq!(columns.columns, expected);
     }
@@ -443,17 +443,5 @@ mod tests {
         assert!(Columns::from_spec("t,gx,gx,gz").is_err());
         assert!(Columns::from_spec("t,u").unwrap_err().contains("'u'"));
         assert!(Columns::from_spec("t,-,ax,ay,az").is_ok());
-    }
-
-    #[test]
-    fn separators() {
-        let fields = |line: &'static str| -> Vec<&[u8]> {
-            Separator::of(line.as_bytes()).split(line.as_bytes()).collect()
-        };
-        assert_eq!(fields("1, 2 ,,3"), [&b"1"[..], b"2", b"", b"3"]);
-        assert_eq!(fields("1;2"), [b"1", b"2"]);
-        assert_eq!(fields("1\t2\t"), [&b"1"[..], b"2", b""]);
-        assert_eq!(fields("  1   2 "), [b"1", b"2"]);
-        assert_eq!(fields("\"1\",'2'"), [b"1", b"2"]);
     }
 }

@@ -1,47 +1,44 @@
 //! Numbers from bytes: values by the shortest exact way, time without ever becoming a float.
 
-/// Powers of ten that a double holds exactly.
-const TEN: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
-];
-
 /// The double nearest to a decimal number; `nan` and `inf` count as numbers.
-///
-/// Where the digits fit 53 bits and the power of ten is exact, one multiplication or division of
-/// two exact doubles rounds once and is right (Clinger 1990); all else goes to the standard
-/// library.
 #[inline]
 pub fn value(bytes: &[u8]) -> Option<f64> {
-    short(bytes).or_else(|| std::str::from_utf8(bytes).ok()?.parse().ok())
+    fast_float2::parse(bytes).ok()
 }
 
-fn short(bytes: &[u8]) -> Option<f64> {
-    let (negative, digits) = match bytes {
-        [b'-', rest @ ..] => (true, rest),
-        rest => (false, rest),
+/// The number with which a line begins, as [`value`], and its length.
+#[inline]
+pub fn leading_value(line: &[u8]) -> Option<(f64, usize)> {
+    fast_float2::parse_partial(line).ok()
+}
+
+/// The time with which a line begins, as [`nanoseconds`], and its length; `None` also when it is
+/// written in an uncommon way.
+#[inline]
+pub fn leading_nanoseconds(line: &[u8], exponent: u32) -> Option<(i64, usize)> {
+    /// As many as an `i64` may have.
+    const MOST_DIGITS: usize = 19;
+    let digits = |from: &[u8]| from.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let whole = digits(line);
+    let places = match line.get(whole) {
+        Some(b'.') => digits(line.get(whole + 1..)?),
+        _ => 0,
     };
-    if digits.len() > 19 {
+    let used = if places > 0 { whole + 1 + places } else { whole };
+    if whole == 0 || whole + places > MOST_DIGITS {
         return None;
     }
-    let (mut mantissa, mut places, mut seen, mut point) = (0_u64, 0_usize, false, false);
-    for &byte in digits {
-        match byte {
-            b'0'..=b'9' => {
-                // At most 19 digits: below 10^19, which fits.
-                mantissa = mantissa * 10 + u64::from(byte - b'0');
-                places += usize::from(point);
-                seen = true;
-            }
-            b'.' if !point => point = true,
-            _ => return None,
-        }
+    let number = |from: &[u8], start: i64| {
+        from.iter().try_fold(start, |sum, byte| {
+            sum.checked_mul(10)?.checked_add(i64::from(byte.wrapping_sub(b'0')))
+        })
+    };
+    let mut units = number(line.get(..whole)?, 0)?;
+    if places > 0 {
+        units = number(line.get(whole + 1..used)?, units)?;
     }
-    if !seen || mantissa > 1 << 53 {
-        return None;
-    }
-    let value = mantissa as f64 / TEN.get(places)?;
-    Some(if negative { -value } else { value })
+    let power = exponent.checked_sub(u32::try_from(places).ok()?)?;
+    Some((units.checked_mul(10_i64.checked_pow(power)?)?, used))
 }
 
 /// Nanoseconds from a decimal number of units of 10^`exponent` ns, rounded to the nearest (halves
@@ -139,6 +136,23 @@ mod tests {
             let text = format!("{}{whole}.{part}", if number < 0 { "-" } else { "" });
             let expected: f64 = text.parse().unwrap();
             prop_assert_eq!(value(text.as_bytes()).unwrap().to_bits(), expected.to_bits());
+        }
+
+        #[test]
+        fn any_text_is_a_number_to_both_or_to_none(text in "[-+]?[0-9]{0,25}[.]?[0-9]{0,25}(e[-+]?[0-9]{1,3})?") {
+            let expected = text.parse::<f64>().ok().map(f64::to_bits);
+            prop_assert_eq!(value(text.as_bytes()).map(f64::to_bits), expected);
+        }
+
+        #[test]
+        fn the_short_way_is_the_long_way(
+            whole in 0_u64..1 << 62, shift in 0_u32..62, part in "[0-9]{0,10}", exponent in 0_u32..10,
+        ) {
+            let text = format!("{}.{part}", whole >> shift);
+            if let Some((stamp_ns, used)) = leading_nanoseconds(format!("{text},1").as_bytes(), exponent) {
+                prop_assert_eq!(Some(stamp_ns), nanoseconds(text.as_bytes(), exponent));
+                prop_assert_eq!(used, text.trim_end_matches('.').len());
+            }
         }
 
         #[test]

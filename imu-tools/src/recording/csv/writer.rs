@@ -41,18 +41,21 @@ impl CsvWriter {
 fn push_sensor(text: &mut Vec<u8>, value: Option<[f64; 3]>) {
     match value {
         None => text.extend_from_slice(b",,,"),
-        Some(value) => {
-            let mut digits = zmij::Buffer::new();
-            for v in value {
-                text.push(b',');
-                text.extend_from_slice(digits.format(v).as_bytes());
-            }
-        }
+        Some(value) => push_values(text, value),
+    }
+}
+
+/// Appends three fields with the fewest digits that are read back as the same doubles.
+pub(crate) fn push_values(text: &mut Vec<u8>, value: [f64; 3]) {
+    let mut digits = zmij::Buffer::new();
+    for v in value {
+        text.push(b',');
+        text.extend_from_slice(digits.format(v).as_bytes());
     }
 }
 
 /// Appends a whole number.
-fn push_integer(text: &mut Vec<u8>, number: i64) {
+pub(crate) fn push_integer(text: &mut Vec<u8>, number: i64) {
     let mut digits = [0; 20];
     let mut left = number.unsigned_abs();
     let mut start = digits.len();

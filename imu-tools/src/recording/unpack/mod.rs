@@ -10,6 +10,7 @@ mod utf16;
 mod zstd;
 
 use std::io::{self, Read};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::input::Input;
@@ -51,11 +52,15 @@ struct State {
     /// Nothing more comes.
     ended: bool,
     damage: Option<String>,
+    /// There is damage: for the reader of what is inside.
+    damaged: Arc<AtomicBool>,
 }
 
 impl Layer {
     fn new(unpack: impl Unpack + 'static) -> Self {
-        Self(Arc::new(Mutex::new(State { unpack: Box::new(unpack), ended: false, damage: None })))
+        let unpack = Box::new(unpack);
+        let damaged = Arc::default();
+        Self(Arc::new(Mutex::new(State { unpack, ended: false, damage: None, damaged })))
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -84,6 +89,7 @@ impl Read for Layer {
             Err(Stop::Damage(what)) => {
                 state.ended = true;
                 state.damage = Some(what);
+                state.damaged.store(true, Ordering::Relaxed);
                 Ok(0)
             }
             Err(Stop::Refused(Error::Io { source, .. })) => Err(source),
@@ -120,8 +126,9 @@ pub fn unpack(mut input: Input) -> Result<(Input, Layers), Error> {
                 path.display()
             )));
         }
+        let damaged = layer.lock().damaged.clone();
         layers.0.push(layer.clone());
-        input = Input::pipe(&path, Box::new(layer));
+        input = Input::unpacked(&path, Box::new(layer), damaged);
     }
 }
 

@@ -1,0 +1,160 @@
+//! Writing EuRoC's folders: `mav0/imu0/data.csv` and its `sensor.yaml`, both or neither.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+use crate::output::Output;
+use crate::recording::csv::{push_integer, push_values};
+use crate::recording::{BLOCK_SAMPLES, Block, Sample, Sink};
+
+const HEADER: &str = "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],\
+                      a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
+
+/// Text is handed on when there is so much of it.
+const PIECE: usize = 256 * 1024;
+
+/// Steps of time from which the rate is taken.
+const STEPS: usize = 1000;
+
+/// Samples of one sensor that may wait for the other.
+const MOST_WAITING: usize = 16 * BLOCK_SAMPLES;
+
+/// EuRoC's folders being written.
+pub struct EurocWriter {
+    folder: PathBuf,
+    /// Folders that were made for this, the outermost first.
+    made: Vec<PathBuf>,
+    data: Option<Output>,
+    text: Vec<u8>,
+    gyroscope: VecDeque<Sample>,
+    accelerometer: VecDeque<Sample>,
+    last_ns: Option<i64>,
+    steps: Vec<i64>,
+}
+
+impl EurocWriter {
+    /// Starts `imu0` in `path`, if that is a `mav0`, or in `path/mav0`.
+    ///
+    /// # Errors
+    /// When `path` is a pipe, or the folders cannot be made.
+    pub fn create(path: &Path) -> Result<Self, Error> {
+        if path == Path::new("-") {
+            return Err(Error::usage("EuRoC's recordings are folders: a pipe cannot be one"));
+        }
+        let mav0 = path.file_name().is_some_and(|name| name == "mav0");
+        let folder = if mav0 { path.join("imu0") } else { path.join("mav0/imu0") };
+        let missing: Vec<&Path> = folder.ancestors().take_while(|f| !f.exists()).collect();
+        let made = missing.into_iter().rev().map(Path::to_owned).collect();
+        let mut writer = Self {
+            folder,
+            made,
+            data: None,
+            text: Vec::with_capacity(PIECE + 1024),
+            gyroscope: VecDeque::new(),
+            accelerometer: VecDeque::new(),
+            last_ns: None,
+            steps: Vec::new(),
+        };
+        writer.text.extend_from_slice(HEADER.as_bytes());
+        std::fs::create_dir_all(&writer.folder)
+            .map_err(|e| Error::io("make the folder", &writer.folder, e))?;
+        writer.data = Some(Output::create(&writer.folder.join("data.csv"))?);
+        Ok(writer)
+    }
+
+    fn row(&mut self, rate: Sample, force: Sample) {
+        if let Some(last) = self.last_ns
+            && self.steps.len() < STEPS
+        {
+            self.steps.push(rate.stamp_ns.saturating_sub(last));
+        }
+        self.last_ns = Some(rate.stamp_ns);
+        push_integer(&mut self.text, rate.stamp_ns);
+        push_values(&mut self.text, rate.value);
+        push_values(&mut self.text, force.value);
+        self.text.push(b'\n');
+    }
+
+    fn flush(&mut self) -> Result<(), Error> {
+        if let Some(data) = &mut self.data {
+            data.write(&self.text)?;
+        }
+        self.text.clear();
+        Ok(())
+    }
+
+    /// The error for a sample without one of the other sensor at its instant.
+    fn alone(&self, stamp_ns: i64) -> Error {
+        Error::data(format!(
+            "EuRoC's data.csv has both sensors in every row, but at {stamp_ns} ns there is one of \
+             them alone: write a .csv or .bag instead of {}",
+            self.folder.display()
+        ))
+    }
+
+    /// The rate in Hz, by the usual step of time.
+    fn rate_hz(&mut self) -> Option<f64> {
+        self.steps.sort_unstable();
+        let step = *self.steps.get(self.steps.len() / 2)?;
+        (step > 0).then(|| (1e12 / step as f64).round() / 1e3)
+    }
+}
+
+impl Sink for EurocWriter {
+    fn write_block(&mut self, block: &Block) -> Result<(), Error> {
+        self.gyroscope.extend(&block.gyroscope);
+        self.accelerometer.extend(&block.accelerometer);
+        while let (Some(&rate), Some(&force)) = (self.gyroscope.front(), self.accelerometer.front())
+        {
+            if rate.stamp_ns != force.stamp_ns {
+                return Err(self.alone(rate.stamp_ns.min(force.stamp_ns)));
+            }
+            self.gyroscope.pop_front();
+            self.accelerometer.pop_front();
+            self.row(rate, force);
+            if self.text.len() >= PIECE {
+                self.flush()?;
+            }
+        }
+        let waiting = self.gyroscope.front().or(self.accelerometer.front());
+        match waiting {
+            Some(sample) if self.gyroscope.len().max(self.accelerometer.len()) > MOST_WAITING => {
+                Err(self.alone(sample.stamp_ns))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(), Error> {
+        if let Some(sample) = self.gyroscope.front().or(self.accelerometer.front()) {
+            return Err(self.alone(sample.stamp_ns));
+        }
+        self.flush()?;
+        let mut sensor = Output::create(&self.folder.join("sensor.yaml"))?;
+        let rate = self.rate_hz().map_or_else(String::new, |rate| format!("rate_hz: {rate}\n"));
+        let yaml = format!(
+            "sensor_type: imu\ncomment: angular rate in rad/s, specific force in m/s^2, sensor \
+             axes\nT_BS:\n  cols: 4\n  rows: 4\n  data: [1.0, 0.0, 0.0, 0.0,\n         0.0, 1.0, \
+             0.0, 0.0,\n         0.0, 0.0, 1.0, 0.0,\n         0.0, 0.0, 0.0, 1.0]\n{rate}"
+        );
+        sensor.write(yaml.as_bytes())?;
+        // Both are complete before either takes its place.
+        if let Some(data) = self.data.take() {
+            data.finish()?;
+        }
+        sensor.finish()?;
+        self.made.clear();
+        Ok(())
+    }
+}
+
+impl Drop for EurocWriter {
+    fn drop(&mut self) {
+        drop(self.data.take());
+        // Folders that hold anything by now stay.
+        for folder in self.made.iter().rev() {
+            let _ = std::fs::remove_dir(folder);
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Recordings that are folders: what is in one decides what it is.
+
+use std::path::Path;
+
+use super::{ReadOptions, Source, euroc};
+use crate::error::Error;
+
+/// Opens the recording in a folder.
+///
+/// # Errors
+/// When there is none, or more than one.
+pub fn open(folder: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Error> {
+    if let Some(source) = euroc::open(folder, options)? {
+        return Ok(source);
+    }
+    Err(Error::data(format!(
+        "{} is a folder without a recording: name a file in it, or a folder with \
+         mav0/imu0/data.csv",
+        folder.display()
+    )))
+}

@@ -1,0 +1,251 @@
+//! Trajectories: poses over time, as TUM and EuRoC write them. They hold no IMU samples.
+//!
+//! TUM's: `timestamp tx ty tz qx qy qz qw`, blanks between, time in seconds, lines with `#` passed
+//! over (Sturm et al. 2012). EuRoC's ground truth: a table whose header names `p_RS_R_x` … and
+//! `q_RS_w` …, time in nanoseconds (Burri et al. 2016); TUM-VI's `mocap0/data.csv` likewise.
+
+use std::path::Path;
+
+use super::csv::dialect::Dialect;
+use super::csv::number;
+use super::input::{Input, LARGEST_PIECE};
+use super::unpack;
+use crate::error::Error;
+
+/// So much of the start is looked at.
+const AHEAD: usize = 64 * 1024;
+
+/// Where a body is and how it is turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Nanoseconds since the epoch of the recording's clock.
+    pub stamp_ns: i64,
+    /// Metres, in the world's axes.
+    pub position: [f64; 3],
+    /// The rotation from body to world as a quaternion x, y, z, w.
+    pub orientation: [f64; 4],
+}
+
+/// A trajectory being read, front to back.
+pub struct Poses {
+    input: Input,
+    format: Format,
+    line: u64,
+}
+
+/// Where its numbers stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Format {
+    dialect: Dialect,
+    /// Power of ten between its time and nanoseconds.
+    exponent: u32,
+    position: [usize; 3],
+    /// x, y, z, w.
+    orientation: [usize; 4],
+}
+
+impl Format {
+    /// The format that a table begins with; `None` where it holds no poses.
+    fn of(start: &[u8]) -> Option<Self> {
+        let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+        let mut lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
+        let mut header = None;
+        let first = lines.find(|line| {
+            let dialect = Dialect::of(line);
+            let row = dialect.fields(line).next().is_some_and(|f| number::value(f).is_some());
+            if !row && header.is_none() {
+                header = Self::named(line);
+            }
+            row
+        })?;
+        header.or_else(|| Self::plain(first))
+    }
+
+    /// EuRoC's, by the names in its header.
+    fn named(line: &[u8]) -> Option<Self> {
+        let text = String::from_utf8_lossy(line).to_lowercase();
+        let dialect = Dialect::of(line);
+        let names: Vec<&str> = text
+            .split(',')
+            .map(|name| name.split('[').next().unwrap_or(name).trim_matches([' ', '#', '\r']))
+            .collect();
+        let at = |kind: &str, axis: &str| {
+            names.iter().position(|name| {
+                let mut words = name.split('_');
+                words.next() == Some(kind) && words.next_back() == Some(axis)
+            })
+        };
+        Some(Self {
+            dialect,
+            exponent: 0,
+            position: [at("p", "x")?, at("p", "y")?, at("p", "z")?],
+            orientation: [at("q", "x")?, at("q", "y")?, at("q", "z")?, at("q", "w")?],
+        })
+    }
+
+    /// TUM's: eight numbers, the last four of them a rotation.
+    fn plain(row: &[u8]) -> Option<Self> {
+        let dialect = Dialect::of(row);
+        let format = Self { dialect, exponent: 9, position: [1, 2, 3], orientation: [4, 5, 6, 7] };
+        let pose = format.pose(row)?;
+        let length = pose.orientation.iter().map(|q| q * q).sum::<f64>().sqrt();
+        // Six decimals are the least that such files have.
+        (dialect.fields(row).count() == 8 && (length - 1.0).abs() < 1e-3).then_some(format)
+    }
+
+    fn pose(&self, row: &[u8]) -> Option<Pose> {
+        let fields: Vec<&[u8]> = self.dialect.fields(row).collect();
+        let number = |at: usize| fields.get(at).and_then(|field| number::value(field));
+        let [x, y, z] = self.position.map(number);
+        let [qx, qy, qz, qw] = self.orientation.map(number);
+        Some(Pose {
+            stamp_ns: number::nanoseconds(fields.first()?, self.exponent)?,
+            position: [x?, y?, z?],
+            orientation: [qx?, qy?, qz?, qw?],
+        })
+    }
+}
+
+impl Poses {
+    /// Opens the trajectory at `path`; `-` is a pipe.
+    ///
+    /// # Errors
+    /// When there is no such file, or it holds no poses.
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        Self::of(unpack::unpack(Input::open(path)?)?.0)
+    }
+
+    /// Whether a file begins as a trajectory does.
+    pub(super) fn are_in(input: &mut Input) -> Result<bool, Error> {
+        input.fill(AHEAD)?;
+        Ok(Format::of(input.at_hand()).is_some())
+    }
+
+    /// Reads the trajectory in `input`.
+    pub(super) fn of(mut input: Input) -> Result<Self, Error> {
+        input.fill(AHEAD)?;
+        let format = Format::of(input.at_hand()).ok_or_else(|| {
+            Error::data(format!(
+                "{} holds no poses as TUM or EuRoC write them",
+                input.path().display()
+            ))
+        })?;
+        Ok(Self { input, format, line: 0 })
+    }
+
+    /// The next pose; `None` at the end, which a row that is cut off is as well.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or a row is none.
+    pub fn next_pose(&mut self) -> Result<Option<Pose>, Error> {
+        loop {
+            let mut seen = 0;
+            let len = loop {
+                let unseen = self.input.at_hand().get(seen..).unwrap_or_default();
+                if let Some(end) = memchr::memchr(b'\n', unseen) {
+                    break seen + end + 1;
+                }
+                seen = self.input.at_hand().len();
+                if seen < LARGEST_PIECE && self.input.fill(seen + 1)? {
+                    continue;
+                }
+                break seen;
+            };
+            if len == 0 {
+                return Ok(None);
+            }
+            self.line += 1;
+            let line = self.input.at_hand().get(..len).unwrap_or_default();
+            let (row, whole) = (line.trim_ascii(), line.ends_with(b"\n"));
+            let row = row.strip_prefix(b"\xef\xbb\xbf").unwrap_or(row);
+            let aside = matches!(row.first(), None | Some(b'#' | b'%'));
+            let pose = self.format.pose(row);
+            // A header without # is the first line.
+            let header = self.line == 1 && pose.is_none();
+            self.input.consume(len);
+            match pose {
+                Some(pose) if !aside => return Ok(Some(pose)),
+                None if !aside && !header => {
+                    if !whole {
+                        return Ok(None);
+                    }
+                    return Err(Error::data(format!(
+                        "{}, line {}: this is no pose",
+                        self.input.path().display(),
+                        self.line
+                    )));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// The error for who looks for an IMU here.
+    pub(super) fn no_samples(mut self) -> Error {
+        let mut poses = 0_u64;
+        while matches!(self.next_pose(), Ok(Some(_))) {
+            poses += 1;
+        }
+        Error::data(format!(
+            "{} holds {poses} poses and no IMU samples: name the recording of the IMU itself",
+            self.input.path().display()
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn poses(text: &str) -> Result<Vec<Pose>, Error> {
+        let stream = Box::new(std::io::Cursor::new(text.as_bytes().to_vec()));
+        let mut poses = Poses::of(Input::pipe(Path::new("a"), stream))?;
+        let mut all = Vec::new();
+        while let Some(pose) = poses.next_pose()? {
+            all.push(pose);
+        }
+        Ok(all)
+    }
+
+    #[test]
+    fn both_formats_say_the_same() {
+        let expected = Pose {
+            stamp_ns: 1_403_636_580_838_555_648,
+            position: [4.688319, -1.786938, 0.783338],
+            orientation: [-0.153029, -0.827383, -0.082152, 0.534108],
+        };
+        for text in [
+            "1403636580.838555648 4.688319 -1.786938 0.783338 -0.153029 -0.827383 -0.082152 0.534108\n",
+            "# timestamp tx ty tz qx qy qz qw\n\
+             1403636580.838555648 4.688319 -1.786938 0.783338 -0.153029 -0.827383 -0.082152 0.534108",
+            "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], \
+             q_RS_z [], v_RS_R_x [m s^-1], b_w_RS_S_x [rad s^-1]\r\n\
+             1403636580838555648,4.688319,-1.786938,0.783338,0.534108,-0.153029,-0.827383,-0.082152,0,0\r\n",
+            "timestamp,p_x,p_y,p_z,q_x,q_y,q_z,q_w\n\
+             1403636580838555648,4.688319,-1.786938,0.783338,-0.153029,-0.827383,-0.082152,0.534108\n",
+        ] {
+            assert_eq!(poses(text).unwrap(), [expected], "{text}");
+        }
+    }
+
+    #[test]
+    fn imu_tables_are_no_poses() {
+        for text in [
+            "0.1 0 0 0 0 0 9.81 25\n",
+            "0.1 0.01 0.02 0.03 0 0 1 25.5\n",
+            "t,gx,gy,gz,ax,ay,az\n0,1,2,3,4,5,6\n",
+            "",
+            "hello\n",
+        ] {
+            assert!(poses(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn faults_and_cuts() {
+        let row = "1 0 0 0 0 0 0 1\n";
+        assert_eq!(poses(&format!("{row}{row}2 0 0")).unwrap().len(), 2);
+        let error = poses(&format!("{row}oops\n{row}")).unwrap_err();
+        assert!(error.to_string().contains("line 2"), "{error}");
+    }
+}
