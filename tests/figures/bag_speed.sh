@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# How fast and in how much memory a four-hour bag is calibrated and simulated.
+# How fast and in how much memory a four-hour bag or MCAP file is calibrated and simulated.
 #
-# Usage: bag_speed.sh IMU_BINARY [RUNS] [FOLDER]
+# Usage: bag_speed.sh IMU_BINARY [RUNS] [FOLDER] [bag|mcap]
 #
-# Writes a bag of 4 h at 200 Hz (1.09 GB) into FOLDER (default: a new temporary one), then prints,
-# as medians of RUNS (default 5) interleaved runs:
-#   - `imu calibrate BAG --json` beside `cat BAG > /dev/null`, both with the file in memory,
+# Writes a recording of 4 h at 200 Hz (about 1 GB) into FOLDER (default: a new temporary one), then
+# prints, as medians of RUNS (default 5) interleaved runs:
+#   - `imu calibrate FILE --json` beside `cat FILE > /dev/null`, both with the file in memory,
 #     and its peak memory (wanted: at most 2.5 times, at most 64 MB)
 #   - `imu simulate` beside writing as many bytes with `cat` (wanted: at most 3 s more)
 #   - peak memory for ten times the length, through a pipe (wanted: the same)
@@ -16,7 +16,8 @@ imu=$(realpath "$1")
 runs=${2:-5}
 work=$(mktemp -d "${3:-${TMPDIR:-/tmp}}/imu-figures.XXXXXX")
 trap 'rm -rf "$work"' EXIT
-bag=$work/still.bag
+ending=${4:-bag}
+bag=$work/still.$ending
 
 # Wall seconds and peak kilobytes of a command, appended to a file.
 timed() { local to=$1; shift; /usr/bin/time -a -o "$work/$to" -f "%e %M" "$@" 2>"$work/err"; }
@@ -25,7 +26,7 @@ peak() { awk '$2 > most {most = $2} END {printf "%.1f MB", most / 1024}' "$work/
 
 "$imu" simulate mid --seed 1 -o "$bag" 2>/dev/null
 cat "$bag" >/dev/null
-echo "bag: $(stat -c %s "$bag") bytes, 4 h at 200 Hz; $runs runs, medians; load $(cut -d' ' -f1 /proc/loadavg) on $(nproc) cores"
+echo "$ending: $(stat -c %s "$bag") bytes, 4 h at 200 Hz; $runs runs, medians; load $(cut -d' ' -f1 /proc/loadavg) on $(nproc) cores"
 for _ in $(seq "$runs"); do
     timed cat sh -c 'cat "$1" > /dev/null' - "$bag"
     timed calibrate sh -c '"$1" calibrate "$2" --json > /dev/null' - "$imu" "$bag"
@@ -34,15 +35,15 @@ awk -v cat="$(median cat 1)" -v us="$(median calibrate 1)" -v peak="$(peak calib
     printf "calibrate: %.2f s, cat: %.2f s, ratio %.2f (wanted: at most 2.5); peak %s (at most 64)\n", us, cat, us / cat, peak }'
 
 for _ in $(seq "$runs"); do
-    rm -f "$work/copy.bag" "$work/again.bag"
+    rm -f "$work/copy.$ending" "$work/again.$ending"
     sync "$work"
-    timed write sh -c 'cat "$1" > "$2"' - "$bag" "$work/copy.bag"
-    rm -f "$work/copy.bag"
+    timed write sh -c 'cat "$1" > "$2"' - "$bag" "$work/copy.$ending"
+    rm -f "$work/copy.$ending"
     sync "$work"
-    timed simulate "$imu" simulate mid --seed 1 -o "$work/again.bag"
+    timed simulate "$imu" simulate mid --seed 1 -o "$work/again.$ending"
 done
-cmp "$bag" "$work/again.bag"
-rm -f "$work/again.bag"
+cmp "$bag" "$work/again.$ending"
+rm -f "$work/again.$ending"
 awk -v write="$(median write 1)" -v us="$(median simulate 1)" -v peak="$(peak simulate)" 'BEGIN {
     printf "simulate: %.2f s, writing as many bytes: %.2f s, beyond it %.2f s (wanted: at most 3); peak %s\n", us, write, us - write, peak }'
 

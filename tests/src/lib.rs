@@ -2,6 +2,7 @@
 
 pub mod bags;
 pub mod command;
+pub mod databases;
 pub mod disturbed;
 pub mod mcaps;
 pub mod monte_carlo;

@@ -28,7 +28,10 @@ fn assert_noise(sensor: &SensorNoise, n: f64, k: f64) {
     match sensor.pooled.random_walk {
         Parameter::Observable { value, low90, high90, .. } => {
             let spread = (high90 / low90).ln() / (2.0 * 1.645);
-            assert!((value / k).ln().abs() < 6.0 * spread, "K {value} ({low90} to {high90}), not {k}");
+            assert!(
+                (value / k).ln().abs() < 6.0 * spread,
+                "K {value} ({low90} to {high90}), not {k}"
+            );
         }
         Parameter::NotObservable { upper90, .. } => assert!(upper90 > 0.5 * k, "{upper90} {k}"),
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{ReadOptions, Source, euroc};
+use super::{ReadOptions, Source, euroc, rosbag2};
 use crate::error::Error;
 
 /// Opens the recording in a folder.
@@ -13,9 +13,12 @@ pub fn open(folder: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Err
     if let Some(source) = euroc::open(folder, options)? {
         return Ok(source);
     }
+    if rosbag2::is_rosbag2(folder) {
+        return Ok(Box::new(rosbag2::FolderReader::open(folder, options)?));
+    }
     Err(Error::data(format!(
-        "{} is a folder without a recording: name a file in it, or a folder with \
-         mav0/imu0/data.csv",
+        "{} is a folder without a recording: name a file in it, or a folder with metadata.yaml, \
+         .db3 or .mcap files, or mav0/imu0/data.csv",
         folder.display()
     )))
 }

@@ -63,6 +63,13 @@ impl Input {
         Ok(Self::new(path, From::File { file, len: about.len() }))
     }
 
+    /// Reads a file that is open already, from its start; `path` is what errors call it.
+    pub fn file(path: &Path, mut file: File) -> Result<Self, Error> {
+        let len = file.seek(SeekFrom::End(0)).and_then(|len| file.rewind().map(|()| len));
+        let len = len.map_err(|e| Error::io("read", path, e))?;
+        Ok(Self::new(path, From::File { file, len }))
+    }
+
     /// Reads from any stream; `path` is what errors call it.
     pub fn pipe(path: &Path, stream: Box<dyn Read + Send>) -> Self {
         Self::new(path, From::Pipe(stream))

@@ -42,6 +42,7 @@ pub mod mcap;
 mod noted;
 pub mod poses;
 mod ros2;
+pub mod rosbag2;
 pub mod timeline;
 mod topics;
 pub mod ulog;
@@ -254,7 +255,8 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     // What it holds decides; the name tells only what a damaged beginning should have been.
     let named = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
     let holds = |magic: &[u8]| start.starts_with(magic);
-    let other = holds(b"#ROSBAG") || holds(mcap::MAGIC) || holds(ulog::MAGIC);
+    let magics = [b"#ROSBAG", mcap::MAGIC, ulog::MAGIC, rosbag2::MAGIC];
+    let other = magics.into_iter().any(holds);
     if holds(b"#ROSBAG") || (named("bag") && !other) {
         return Ok(Box::new(bag::BagReader::open(input, options)?));
     }
@@ -264,9 +266,13 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     if holds(ulog::MAGIC) || (named("ulg") && !other) {
         return Ok(Box::new(ulog::UlogReader::open(input, options)?));
     }
+    if holds(rosbag2::MAGIC) || (named("db3") && !other) {
+        return Ok(Box::new(rosbag2::DatabaseReader::open(input, options)?));
+    }
     if start.contains(&0) {
         return Err(Error::data(format!(
-            "{} is neither a ROS 1 bag, an MCAP file, a PX4 ULog nor a table of numbers in text",
+            "{} is neither a ROS 1 bag, an MCAP file, a PX4 ULog, a database of rosbag2 \
+             nor a table of numbers in text",
             path.display()
         )));
     }

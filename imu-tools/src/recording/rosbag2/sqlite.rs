@@ -1,0 +1,419 @@
+//! Reading the tables of an SQLite file: pages, B-trees and records, nothing of SQL.
+//!
+//! A file is pages of one size; the first 100 bytes say which. A table is a tree of pages: inner
+//! ones (kind 5) hold numbers of pages, leaves (kind 13) hold rows. A row is a header of types and
+//! the values; what does not fit its page goes on in a chain of overflow pages. Table
+//! `sqlite_schema`, in page 1, names the first page of every other one. What was committed but not
+//! yet moved into the file stands in the write-ahead log ([`wal`](super::wal)). Source: "Database
+//! File Format", <https://www.sqlite.org/fileformat2.html>.
+//!
+//! A page that is not what it should be costs its rows, and is counted. Memory: a page and the
+//! numbers in the inner pages above it.
+
+use std::path::Path;
+
+use super::wal::Wal;
+use crate::error::Error;
+use crate::recording::input::Input;
+
+/// The first bytes of every file.
+pub const MAGIC: &[u8] = b"SQLite format 3\0";
+
+/// Bytes of the file's header, in front of the first page's own.
+const HEADER: usize = 100;
+
+/// Page of the table of tables.
+const SCHEMA: u32 = 1;
+
+/// Kinds of pages in a table's tree.
+const INNER: u8 = 5;
+const LEAF: u8 = 13;
+
+/// A tree of more levels would hold more pages than there are numbers for.
+const DEEPEST: usize = 24;
+
+/// A longer text or blob is none of ours: a message of an IMU has some hundred bytes.
+const LONGEST: usize = 64 * 1024;
+
+/// Values of a row that are looked at, at most.
+const COLUMNS: usize = 64;
+
+/// The pages of a database.
+pub struct Pages {
+    input: Input,
+    wal: Option<Wal>,
+    size: usize,
+    /// Bytes of a page that hold data.
+    usable: usize,
+    /// Pages that the file and its log can have at most.
+    count: u64,
+    /// Pages read so far.
+    pub read: u64,
+    /// Pages that are missing or are not what they should be.
+    pub lost: u64,
+    /// Pages that the file should have, if it has fewer.
+    pub cut_off: Option<u64>,
+}
+
+fn word(bytes: &[u8], at: usize) -> Option<u32> {
+    Some(u32::from_be_bytes(*bytes.get(at..)?.first_chunk()?))
+}
+
+fn half(bytes: &[u8], at: usize) -> Option<usize> {
+    Some(usize::from(u16::from_be_bytes(*bytes.get(at..)?.first_chunk()?)))
+}
+
+/// A number of one to nine bytes, seven bits each, and what follows it.
+fn varint(bytes: &[u8]) -> Option<(u64, &[u8])> {
+    let mut value = 0_u64;
+    for (at, &byte) in bytes.iter().enumerate().take(9) {
+        if at == 8 {
+            return Some((value << 8 | u64::from(byte), bytes.get(9..)?));
+        }
+        value = value << 7 | u64::from(byte & 0x7f);
+        if byte < 0x80 {
+            return Some((value, bytes.get(at + 1..)?));
+        }
+    }
+    None
+}
+
+impl Pages {
+    /// Reads the header of a file that can be sought in.
+    ///
+    /// # Errors
+    /// When it is no SQLite file, or one whose texts are UTF-16.
+    pub fn open(mut input: Input, wal: Option<Input>) -> Result<Self, Error> {
+        let name = input.path().display().to_string();
+        let whole = input.fill(HEADER)?;
+        let header = input.at_hand();
+        if !whole || !header.starts_with(MAGIC) {
+            return Err(Error::data(format!(
+                "{name} is no SQLite file, or is cut off at its start"
+            )));
+        }
+        let size = match half(header, 16) {
+            Some(1) => 65_536,
+            size => size.unwrap_or(0),
+        };
+        let usable = size.saturating_sub(usize::from(header.get(20).copied().unwrap_or(0)));
+        if !size.is_power_of_two() || size < 512 || usable < 480 {
+            return Err(Error::data(format!(
+                "{name} is damaged: its header says that its pages are {size} bytes long"
+            )));
+        }
+        if word(header, 56).is_some_and(|encoding| encoding > 1) {
+            return Err(Error::data(format!(
+                "{name} holds texts in UTF-16, and is no recording of rosbag2"
+            )));
+        }
+        let len = input.len().unwrap_or(0);
+        // The count holds if the last writer knew of it.
+        let known = word(header, 24) == word(header, 92);
+        let told = word(header, 28).filter(|_| known).map(u64::from);
+        let wal = wal.map(|log| Wal::open(log, size)).transpose()?.flatten();
+        let cut_off = told.filter(|told| *told > len / size as u64 && wal.is_none());
+        let count = len.div_ceil(size as u64).max(wal.as_ref().map_or(0, Wal::highest_page));
+        Ok(Self { input, wal, size, usable, count, read: 0, lost: 0, cut_off })
+    }
+
+    /// The name that errors call the file by.
+    pub fn path(&self) -> &Path {
+        self.input.path()
+    }
+
+    /// Length of the file.
+    pub fn len(&self) -> Option<u64> {
+        self.input.len()
+    }
+
+    /// Length of a page.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Page `number`, the first is 1; `None` where the file does not have it.
+    fn page(&mut self, number: u32) -> Result<Option<&[u8]>, Error> {
+        let Some(before) = number.checked_sub(1) else { return Ok(None) };
+        self.read += 1;
+        let (input, offset) = match self.wal.as_mut().and_then(|wal| wal.page(number)) {
+            Some(there) => there,
+            None => (&mut self.input, u64::from(before) * self.size as u64),
+        };
+        // Pages of a recording follow each other, so the next one is at hand most of the time.
+        let ahead = offset.checked_sub(input.offset()).and_then(|n| usize::try_from(n).ok());
+        match ahead.filter(|n| *n <= input.at_hand().len()) {
+            Some(n) => input.consume(n),
+            None if input.seek(offset)? => {}
+            None => return Ok(None),
+        }
+        input.fill(self.size)?;
+        Ok(input.at_hand().get(..self.size))
+    }
+}
+
+/// Where a value of a row is, and what it is.
+#[derive(Clone, Copy, Debug)]
+struct Field {
+    kind: u64,
+    /// Offset in the row.
+    start: usize,
+    len: usize,
+}
+
+/// A walk through the rows of a table, in the order of their numbers.
+pub struct Rows {
+    /// Pages to come, of each level of the tree.
+    inner: Vec<std::vec::IntoIter<u32>>,
+    /// The leaf whose rows come next.
+    leaf: Vec<u8>,
+    /// Offset of its own header.
+    header: usize,
+    cell: usize,
+    cells: usize,
+    /// Pages of the tree so far: in circles there would be no end.
+    visited: u64,
+    /// Number of the row at hand.
+    pub number: i64,
+    /// Where in the leaf it starts, how much of it is there, and how long it is.
+    start: usize,
+    local: usize,
+    len: usize,
+    /// Where it goes on.
+    overflow: u32,
+    fields: Vec<Field>,
+    gathered: Vec<u8>,
+    /// Rows that are not what they should be.
+    pub lost: u64,
+}
+
+impl Rows {
+    /// The rows of the table whose tree begins in page `root`.
+    pub fn new(root: u32) -> Self {
+        Self {
+            inner: vec![vec![root].into_iter()],
+            leaf: Vec::new(),
+            header: 0,
+            cell: 0,
+            cells: 0,
+            visited: 0,
+            number: 0,
+            start: 0,
+            local: 0,
+            len: 0,
+            overflow: 0,
+            fields: Vec::new(),
+            gathered: Vec::new(),
+            lost: 0,
+        }
+    }
+
+    /// The rows of the table of tables.
+    pub fn of_schema() -> Self {
+        Self::new(SCHEMA)
+    }
+
+    /// Goes to the next row; `false` at the end.
+    pub fn advance(&mut self, pages: &mut Pages) -> Result<bool, Error> {
+        loop {
+            while self.cell < self.cells {
+                self.cell += 1;
+                if self.row(self.cell - 1, pages.usable).is_some() {
+                    return Ok(true);
+                }
+                self.lost += 1;
+            }
+            if !self.next_leaf(pages)? {
+                return Ok(false);
+            }
+        }
+    }
+
+    /// Goes to the next leaf.
+    fn next_leaf(&mut self, pages: &mut Pages) -> Result<bool, Error> {
+        (self.cell, self.cells) = (0, 0);
+        while let Some(level) = self.inner.last_mut() {
+            let Some(number) = level.next() else {
+                self.inner.pop();
+                continue;
+            };
+            self.visited += 1;
+            if self.visited > pages.count {
+                // Every page was seen, so this is one of them again.
+                pages.lost += 1;
+                self.inner.clear();
+                return Ok(false);
+            }
+            let header = if number == SCHEMA { HEADER } else { 0 };
+            let Some(page) = pages.page(number)? else {
+                pages.lost += 1;
+                continue;
+            };
+            let cells = half(page, header + 3).unwrap_or(0);
+            match page.get(header) {
+                Some(&LEAF) => {
+                    self.leaf.clear();
+                    self.leaf.extend_from_slice(page);
+                    (self.header, self.cells) = (header, cells);
+                    return Ok(true);
+                }
+                Some(&INNER) if self.inner.len() < DEEPEST => {
+                    let child = |cell: usize| word(page, half(page, header + 12 + 2 * cell)?);
+                    let mut children: Vec<u32> = (0..cells).map_while(child).collect();
+                    let whole = children.len() == cells;
+                    children.extend(word(page, header + 8));
+                    if !whole {
+                        pages.lost += 1;
+                    }
+                    self.inner.push(children.into_iter());
+                }
+                _ => pages.lost += 1,
+            }
+        }
+        Ok(false)
+    }
+
+    /// Finds the values of a row of the leaf.
+    fn row(&mut self, cell: usize, usable: usize) -> Option<()> {
+        let start = half(&self.leaf, self.header + 8 + 2 * cell)?;
+        let all = self.leaf.get(start..)?;
+        let (len, rest) = varint(all)?;
+        let (number, rest) = varint(rest)?;
+        self.start = self.leaf.len() - rest.len();
+        self.number = number.cast_signed();
+        self.len = usize::try_from(len).ok()?;
+        // How much of a row stays in its page, by section 1.6 of the source.
+        let most = usable - 35;
+        self.local = self.len;
+        if self.len > most {
+            let least = (usable - 12) * 32 / 255 - 23;
+            let odd = least + (self.len - least) % (usable - 4);
+            self.local = if odd <= most { odd } else { least };
+        }
+        let row = rest.get(..self.local)?;
+        self.overflow = if self.local < self.len { word(rest, self.local)? } else { 0 };
+
+        let (header, _) = varint(row)?;
+        let header = usize::try_from(header).ok()?;
+        let (_, mut kinds) = varint(row.get(..header)?)?;
+        let mut at = header;
+        self.fields.clear();
+        while !kinds.is_empty() && self.fields.len() < COLUMNS {
+            let (kind, rest) = varint(kinds)?;
+            kinds = rest;
+            let len = match kind {
+                0 | 8 | 9 => 0,
+                1..=4 => kind as usize,
+                5 => 6,
+                6 | 7 => 8,
+                10 | 11 => return None,
+                _ => usize::try_from((kind - 12) / 2).ok()?,
+            };
+            self.fields.push(Field { kind, start: at, len });
+            at = at.checked_add(len)?;
+        }
+        (at <= self.len).then_some(())
+    }
+
+    /// The bytes of a value that are in the leaf; `None` if some are not.
+    fn here(&self, field: Field) -> Option<&[u8]> {
+        let row = self.leaf.get(self.start..self.start + self.local)?;
+        row.get(field.start..field.start.checked_add(field.len)?)
+    }
+
+    /// A whole number of the row at hand; a column that is the row's number is stored as nothing.
+    pub fn integer(&self, column: usize) -> Option<i64> {
+        let field = *self.fields.get(column)?;
+        match field.kind {
+            0 => Some(self.number),
+            8 => Some(0),
+            9 => Some(1),
+            1..=6 => {
+                let bytes = self.here(field)?;
+                let negative = bytes.first().is_some_and(|first| *first >= 0x80);
+                let start = if negative { -1_i64 } else { 0 };
+                Some(bytes.iter().fold(start, |value, byte| value << 8 | i64::from(*byte)))
+            }
+            _ => None,
+        }
+    }
+
+    /// A text of the row at hand.
+    pub fn text(&mut self, column: usize, pages: &mut Pages) -> Result<Option<String>, Error> {
+        let bytes = self.bytes(column, pages)?;
+        Ok(bytes.map(|bytes| String::from_utf8_lossy(bytes).into_owned()))
+    }
+
+    /// The bytes of a text or blob of the row at hand, brought together from where they are; `None`
+    /// if they are not there, or too long to be one of ours.
+    pub fn bytes(&mut self, column: usize, pages: &mut Pages) -> Result<Option<&[u8]>, Error> {
+        let Some(field) = self.fields.get(column).copied().filter(|field| field.kind >= 12) else {
+            return Ok(None);
+        };
+        let end = field.start + field.len;
+        if end > self.local && (end > LONGEST || !self.gather(end, pages)?) {
+            return Ok(None);
+        }
+        Ok(if end <= self.local { self.here(field) } else { self.gathered.get(field.start..end) })
+    }
+
+    /// Brings the row together up to `end`; `false` if its chain of pages breaks.
+    fn gather(&mut self, end: usize, pages: &mut Pages) -> Result<bool, Error> {
+        self.gathered.clear();
+        let here = self.leaf.get(self.start..self.start + self.local);
+        self.gathered.extend_from_slice(here.unwrap_or_default());
+        let (mut next, usable) = (self.overflow, pages.usable);
+        while self.gathered.len() < end {
+            let Some(page) = pages.page(next)? else { return Ok(false) };
+            next = word(page, 0).unwrap_or(0);
+            let left = end - self.gathered.len();
+            let piece = page.get(4..usable).unwrap_or_default();
+            self.gathered.extend_from_slice(piece.get(..left).unwrap_or(piece));
+        }
+        Ok(true)
+    }
+}
+
+/// The names of a table's columns, from the command that made it.
+pub fn columns(sql: &str) -> Vec<String> {
+    let inside = sql.split_once('(').map_or("", |(_, rest)| rest);
+    let inside = inside.rsplit_once(')').map_or(inside, |(inside, _)| inside);
+    let mut depth = 0_usize;
+    let parts = inside.split(|c| {
+        match c {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        c == ',' && depth == 0
+    });
+    let quote = |c: char| "\"'`[]".contains(c);
+    parts
+        .filter_map(|part| part.split_whitespace().next())
+        .map(|name| name.trim_matches(quote).to_lowercase())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_one_to_nine_bytes() {
+        for (bytes, value) in
+            [(&[0x7f][..], 127), (&[0x81, 0x00], 128), (&[0x82, 0x2c], 300), (&[0xff; 9], u64::MAX)]
+        {
+            assert_eq!(varint(bytes), Some((value, &[][..])));
+            assert_eq!(varint(&bytes[..bytes.len() - 1]), None);
+        }
+    }
+
+    #[test]
+    fn columns_are_named_in_order() {
+        let sql = "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER NOT NULL,\
+                   \"timestamp\" INTEGER DEFAULT (max(1, 2)), data BLOB NOT NULL)";
+        assert_eq!(columns(sql), ["id", "topic_id", "timestamp", "data"]);
+        assert_eq!(columns("CREATE"), Vec::<String>::new());
+        assert_eq!(columns(")("), Vec::<String>::new());
+    }
+}
