@@ -190,12 +190,12 @@ impl Bytes {
 
     /// Leaves the chunk in which we are, of which all was read that can be; where it began, and
     /// how it was left.
-    pub fn leave(&mut self) -> Result<(u64, Left), Error> {
+    pub fn leave(&mut self) -> (u64, Left) {
         match std::mem::replace(&mut self.place, Place::File) {
-            Place::File => Ok((0, Left::Whole)),
+            Place::File => (0, Left::Whole),
             Place::Plain { start, end } => {
                 let left = if self.input.offset() < end { Left::Cut } else { Left::Whole };
-                Ok((start, left))
+                (start, left)
             }
             Place::Packed { start, says, unpacker } => {
                 let (left, unpacked) = (unpacker.left(), unpacker.offset());
@@ -209,16 +209,9 @@ impl Bytes {
                         Left::OtherSize { unpacked, says }
                     }
                     Some(Ending::Whole) => Left::Whole,
-                    Some(Ending::Damaged) | None => {
-                        // Its end is where it says, if that can be.
-                        let room = self.room();
-                        if !endless && room.is_none_or(|room| left <= room) {
-                            self.input.skip(left)?;
-                        }
-                        Left::Damaged { unpacked }
-                    }
+                    Some(Ending::Damaged) | None => Left::Damaged { unpacked },
                 };
-                Ok((start, how))
+                (start, how)
             }
         }
     }

@@ -2,7 +2,9 @@
 //!
 //! A record's header is a sound sign. Its fields have names, `op` among them, values of fixed
 //! lengths, and must fill the header's length to the byte: that 38 bytes of noise look like a
-//! message's header has a chance below 2⁻²⁰⁰.
+//! message's header has a chance below 2⁻²⁰⁰. LZ4 leaves text that did not occur before as it is, so
+//! that a header can stand in a compressed chunk; but another one behind it, at the distance that the
+//! first says, cannot.
 
 use memchr::memmem;
 
@@ -14,19 +16,34 @@ use super::unpack::Compression;
 const LONGEST_HEADER: usize = 1024;
 
 /// A record that begins in the last so many bytes may not be found without those that follow.
-pub const TAIL: usize = LONGEST_HEADER + 8;
+pub const TAIL: usize = 8 * LONGEST_HEADER;
+
+/// What is looked through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Among {
+    /// Records.
+    Records,
+    /// Records, or the data of compressed chunks.
+    Anything,
+}
 
 /// How far behind the start of a header its field `op` is looked for.
 const REACH: usize = 256;
 
 /// Where in `bytes` the first record begins that can be one.
-pub fn next_record(bytes: &[u8]) -> Option<usize> {
+pub fn next_record(bytes: &[u8], among: Among) -> Option<usize> {
+    let is_record = |bytes: &[u8]| match plausible(bytes) {
+        Some((op::MESSAGE | op::CONNECTION, len)) if among == Among::Anything => {
+            bytes.get(len..).and_then(plausible).is_some()
+        }
+        other => other.is_some(),
+    };
     let mut searched = 0;
     for op in memmem::find_iter(bytes, b"op=") {
         // The header's length and the field's stand before it.
         let Some(last) = op.checked_sub(8) else { continue };
         let first = op.saturating_sub(REACH).max(searched);
-        if let Some(found) = (first..=last).find(|&at| bytes.get(at..).is_some_and(plausible)) {
+        if let Some(found) = (first..=last).find(|&at| bytes.get(at..).is_some_and(is_record)) {
             return Some(found);
         }
         searched = last + 1;
@@ -34,29 +51,30 @@ pub fn next_record(bytes: &[u8]) -> Option<usize> {
     None
 }
 
-/// Whether `bytes` begin with a header such as programs write.
-fn plausible(bytes: &[u8]) -> bool {
+/// The kind and length of the record with which `bytes` begin, if its header is such as programs
+/// write.
+fn plausible(bytes: &[u8]) -> Option<(u8, usize)> {
     let length = bytes.first_chunk().map_or(0, |b| u32::from_le_bytes(*b)) as usize;
     if !(8..=LONGEST_HEADER).contains(&length) {
-        return false;
+        return None;
     }
-    let Some((header, rest)) = prefixed(bytes) else { return false };
-    let (Some(header), Some(data)) = (Header::parse(header), rest.first_chunk()) else {
-        return false;
-    };
+    let (header, rest) = prefixed(bytes)?;
+    let (header, data) = (Header::parse(header)?, rest.first_chunk()?);
     let data = u64::from(u32::from_le_bytes(*data));
     let entries = |size: u64| header.count.is_some_and(|count| u64::from(count) * size == data);
-    match header.op {
-        Some(op::MESSAGE) => header.conn.is_some() && header.time.is_some(),
-        Some(op::CONNECTION) => header.conn.is_some() && header.topic.is_some(),
-        Some(op::INDEX) => header.conn.is_some() && entries(12),
-        Some(op::CHUNK_INFO) => entries(8),
-        Some(op::CHUNK) => {
+    let op = header.op?;
+    let whole = match op {
+        op::MESSAGE => header.conn.is_some() && header.time.is_some(),
+        op::CONNECTION => header.conn.is_some() && header.topic.is_some(),
+        op::INDEX => header.conn.is_some() && entries(12),
+        op::CHUNK_INFO => entries(8),
+        op::CHUNK => {
             let name = header.compression.unwrap_or_default();
             header.size.is_some() && (name == b"none" || Compression::of(name).is_some())
         }
         _ => false,
-    }
+    };
+    whole.then_some((op, 8 + length + data as usize))
 }
 
 #[cfg(test)]
@@ -75,8 +93,12 @@ mod tests {
     fn records_are_found_behind_anything() {
         for noise in [&b""[..], b"op=", b"op=op=op=\x02op=", &[0; 500], &[0xff; 300]] {
             let bytes = [noise, &message()].concat();
-            assert_eq!(next_record(&bytes), Some(noise.len()));
-            assert_eq!(next_record(&bytes[..bytes.len() - 8]), None);
+            assert_eq!(next_record(&bytes, Among::Records), Some(noise.len()));
+            assert_eq!(next_record(&bytes[..bytes.len() - 8], Among::Records), None);
+            // Alone it may be a piece of a compressed chunk.
+            assert_eq!(next_record(&bytes, Among::Anything), None);
+            let two = [bytes, message()].concat();
+            assert_eq!(next_record(&two, Among::Anything), Some(noise.len()));
         }
     }
 
@@ -89,7 +111,7 @@ mod tests {
             }
             let mut bytes = message();
             bytes[change] ^= 0x40;
-            assert_eq!(next_record(&bytes), None, "{change}");
+            assert_eq!(next_record(&bytes, Among::Records), None, "{change}");
         }
     }
 
@@ -101,7 +123,7 @@ mod tests {
                 [("conn", &[0; 4]), ("count", &count.to_le_bytes()), ("op", &[op::INDEX])];
             push_header(&mut record, &fields);
             push_prefixed(&mut record, &[0; 24]);
-            assert_eq!(next_record(&record), found);
+            assert_eq!(next_record(&record, Among::Anything), found);
         }
     }
 }

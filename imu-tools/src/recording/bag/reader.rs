@@ -6,7 +6,7 @@
 use super::account::Account;
 use super::chunk::{Bytes, Left};
 use super::connection;
-use super::damage::{TAIL, next_record};
+use super::damage::{Among, TAIL, next_record};
 use super::record::{Header, prefixed};
 use super::repeat::Repeat;
 use super::samples::{Samples, has_room};
@@ -131,10 +131,11 @@ impl BagReader {
         }
         self.account = Account::of(&header);
         // Blanks fill it up; where there is a record in them, its length is wrong.
-        let blanks = 8 + record.header..8 + record.header + record.data;
-        let whole = self.bytes.fill(blanks.end)?;
-        let filled = self.bytes.at_hand().get(blanks).unwrap_or_default();
-        if record.data > LARGEST_HEADER || next_record(filled).is_some() {
+        let (start, len) = (8 + record.header, 8 + record.header + record.data);
+        let whole = self.bytes.fill(len)?;
+        let bytes = self.bytes.at_hand();
+        let blanks = bytes.get(..len).unwrap_or(bytes).get(start..).unwrap_or_default();
+        if record.data > LARGEST_HEADER || next_record(blanks, Among::Records).is_some() {
             self.damaged(!whole)?;
         } else {
             self.step_over(&record)?;
@@ -237,7 +238,7 @@ impl BagReader {
                     let payload = bytes.get(8 + record.header..).unwrap_or_default();
                     if self.samples.message(payload, record.time, role, block) {
                         self.repeat = Repeat::of(bytes, record.header, role);
-                    } else if next_record(payload).is_some() {
+                    } else if next_record(payload, Among::Records).is_some() {
                         return self.damaged(false); // its length is wrong
                     } else {
                         self.samples.count_malformed();
@@ -331,7 +332,7 @@ impl BagReader {
                 "has a chunk at byte {start}, before the end of the one that precedes it: one of \
                  them is damaged"
             ));
-            self.bytes.leave()?;
+            self.bytes.leave();
         }
         self.account.chunks = self.account.chunks.saturating_add(1);
         self.bytes.consume(8 + record.header);
@@ -352,7 +353,7 @@ impl BagReader {
 
     /// Leaves a chunk of which all was read that can be.
     fn leave_chunk(&mut self) -> Result<bool, Error> {
-        let (start, left) = self.bytes.leave()?;
+        let (start, left) = self.bytes.leave();
         let chunk = format!("has a chunk at byte {start}");
         match left {
             Left::Whole => {}
@@ -366,9 +367,12 @@ impl BagReader {
             Left::WrongSum => self.warn(format!(
                 "{chunk} whose checksum is wrong: values in it may be wrong, and are used"
             )),
-            Left::Damaged { unpacked } => self.warn(format!(
-                "{chunk} that is damaged: {unpacked} bytes could be unpacked, its rest is lost"
-            )),
+            Left::Damaged { unpacked } => {
+                self.warn(format!(
+                    "{chunk} that is damaged: {unpacked} bytes could be unpacked, its rest is lost"
+                ));
+                self.search()?;
+            }
         }
         Ok(true)
     }
@@ -388,19 +392,25 @@ impl BagReader {
     fn damaged(&mut self, piece: bool) -> Result<bool, Error> {
         let (at, from) = (self.bytes.at(), self.bytes.offset());
         self.bytes.consume(1);
+        if !self.search()? {
+            return Ok(self.over(&at, from, piece));
+        }
+        let lost = self.bytes.offset() - from;
+        self.warn(format!("is damaged at {at}: {lost} bytes are lost"));
+        Ok(true)
+    }
+
+    /// Goes to the next record; `false`, at the end of the chunk or file, where there is none.
+    fn search(&mut self) -> Result<bool, Error> {
+        let among = if self.bytes.in_chunk() { Among::Records } else { Among::Anything };
         loop {
             let more = self.bytes.fill(SCAN)?;
             let bytes = self.bytes.at_hand();
-            if let Some(clear) = next_record(bytes) {
-                self.bytes.consume(clear);
-                let lost = self.bytes.offset() - from;
-                self.warn(format!("is damaged at {at}: {lost} bytes are lost"));
-                return Ok(true);
-            }
+            let found = next_record(bytes, among);
             let clear = if more { bytes.len().saturating_sub(TAIL) } else { bytes.len() };
-            self.bytes.consume(clear);
-            if !more {
-                return Ok(self.over(&at, from, piece));
+            self.bytes.consume(found.unwrap_or(clear));
+            if found.is_some() || !more {
+                return Ok(found.is_some());
             }
         }
     }
