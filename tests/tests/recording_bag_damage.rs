@@ -115,7 +115,8 @@ fn damage_anywhere_costs_what_it_hits() {
     for packing in Packing::ALL {
         for (bytes, _) in bags(packing) {
             let whole = read_pipe(&bytes).unwrap();
-            for at in 13..bytes.len() {
+            let step = if packing == Packing::Bz2 { 5 } else { 1 }; // bz2 costs the most
+            for at in (13..bytes.len()).step_by(step) {
                 let mut damaged = bytes.clone();
                 for byte in &mut damaged[at..(at + 6).min(bytes.len())] {
                     *byte ^= 0xa5;
