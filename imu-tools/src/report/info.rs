@@ -61,7 +61,11 @@ fn sensor(text: &mut String, sensor: &SensorNoise) {
         let _ = writeln!(text, "  {name:<16}{what}");
     };
     row("samples", format!("{} in {}", stamps.samples, duration(stamps.span_s)));
-    row("rate", format!("{:.6} ± {:.1e} Hz", stamps.rate_hz, stamps.rate_sd_hz));
+    let error = match stamps.rate_sd_hz {
+        sd if sd > 0.0 => format!(" ± {sd:.1e}"),
+        _ => String::new(),
+    };
+    row("rate", format!("{:.6}{error} Hz", stamps.rate_hz));
     row("jitter", format!("{} ms rms", short(1e3 * stamps.jitter_s)));
     row("gaps", format!("{}, samples missing: {}", stamps.gap_count, stamps.missing));
     row(
