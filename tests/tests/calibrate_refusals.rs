@@ -42,7 +42,7 @@ fn files_that_are_no_recordings() {
         (folder.put("empty.csv", ""), &["empty.csv is empty"]),
         (folder.put("text.bag", "Dear diary,\nno bag.\n"), &["text.bag is no ROS 1 bag"]),
         (folder.put("old.bag", "#ROSBAG V1.2\n"), &["old.bag is no ROS 1 bag of version 2.0"]),
-        (folder.put("a.zip", zip), &["a.zip is neither a ROS 1 bag,"]),
+        (folder.put("a.zip", zip), &["a.zip is no whole .npz"]),
         (folder.put("text.csv", "Dear diary,\nno table.\n"), &["text.csv holds no row of numbers"]),
         (
             folder.put("no_imu.bag", no_imu),
@@ -66,7 +66,7 @@ fn files_that_are_no_recordings() {
     let words = ["one.bag has no topic gyro", "/imu (sensor_msgs/Imu)"];
     assert_refused(&calibrate(&[&one, "--topic", "gyro"]), 2, &words);
     let here = folder.path().to_str().expect("UTF-8");
-    assert_refused(&calibrate(&[here]), 1, &["it is a folder"]);
+    assert_refused(&calibrate(&[here]), 1, &["is a folder without a recording"]);
     assert_refused(&calibrate(&["-"]), 1, &["standard input is empty"]);
 }
 

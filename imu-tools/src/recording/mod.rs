@@ -40,6 +40,7 @@ mod inside;
 mod joined;
 pub mod mcap;
 mod noted;
+pub mod numpy;
 pub mod poses;
 mod ros2;
 pub mod rosbag2;
@@ -256,7 +257,7 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     let named = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
     let holds = |magic: &[u8]| start.starts_with(magic);
     let magics = [b"#ROSBAG", mcap::MAGIC, ulog::MAGIC, rosbag2::MAGIC];
-    let other = magics.into_iter().any(holds);
+    let other = magics.into_iter().any(holds) || numpy::is_numpy(start);
     if holds(b"#ROSBAG") || (named("bag") && !other) {
         return Ok(Box::new(bag::BagReader::open(input, options)?));
     }
@@ -269,10 +270,13 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     if holds(rosbag2::MAGIC) || (named("db3") && !other) {
         return Ok(Box::new(rosbag2::DatabaseReader::open(input, options)?));
     }
+    if numpy::is_numpy(start) {
+        return Ok(Box::new(numpy::NumpyReader::open(input, options)?));
+    }
     if start.contains(&0) {
         return Err(Error::data(format!(
-            "{} is neither a ROS 1 bag, an MCAP file, a PX4 ULog, a database of rosbag2 \
-             nor a table of numbers in text",
+            "{} is neither a ROS 1 bag, an MCAP file, a PX4 ULog, a database of rosbag2, \
+             an array of NumPy nor a table of numbers in text",
             path.display()
         )));
     }

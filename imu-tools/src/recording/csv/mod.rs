@@ -8,7 +8,7 @@
 //! so that sensors of different rates share a file; a field that is no finite number is a reading
 //! that failed.
 
-mod columns;
+pub(super) mod columns;
 mod date;
 pub(super) mod dialect;
 mod layout;
@@ -16,7 +16,7 @@ mod names;
 pub(super) mod number;
 mod reader;
 mod row;
-mod time_unit;
+pub(super) mod time_unit;
 mod told;
 mod writer;
 

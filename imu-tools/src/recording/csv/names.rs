@@ -256,9 +256,11 @@ fn is_time(word: &str) -> bool {
     [
         "t",
         "time",
+        "times",
         "timestamp",
         "timestamps",
         "stamp",
+        "stamps",
         "ts",
         "clock",
         "date",
