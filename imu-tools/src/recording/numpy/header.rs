@@ -30,8 +30,8 @@ pub struct Field {
     pub name: String,
     /// Where it begins.
     pub at: usize,
-    /// Its type; `None` where that is none we read.
-    pub scalar: Option<Scalar>,
+    /// Its type, or what NumPy calls it where it is none we read.
+    pub scalar: Result<Scalar, String>,
 }
 
 impl Header {
@@ -86,9 +86,9 @@ impl Header {
         });
         let shape = shape.collect::<Result<_, _>>()?;
         let (fields, record) = match get("descr")? {
-            Literal::Text(name) => {
-                let scalar = Scalar::named(name).ok_or_else(|| unknown(name))?;
-                (vec![Field { name: String::new(), at: 0, scalar: Some(scalar) }], scalar.size)
+            Literal::Text(kind) => {
+                let (scalar, size) = typed(kind)?;
+                (vec![Field { name: String::new(), at: 0, scalar }], size)
             }
             Literal::List(fields) => structure(fields)?,
             _ => return Err("its type is damaged".into()),
@@ -112,10 +112,7 @@ fn structure(list: &[Literal]) -> Result<(Vec<Field>, usize), String> {
             }
             _ => return Err("its type has fields in fields: save a flat one".into()),
         };
-        // Text and bytes are passed over: |S12 is 12 bytes, <U3 is 3 characters of 4.
-        let scalar = Scalar::named(kind);
-        let size = scalar.map(|scalar| scalar.size).or_else(|| size_of(kind));
-        let size = size.ok_or_else(|| unknown(kind))?;
+        let (scalar, size) = typed(kind)?;
         let total = usize::try_from(shape).ok().and_then(|count| count.checked_mul(size));
         let end = total.and_then(|total| at.checked_add(total)).filter(|&n| n <= LARGEST_PIECE);
         let end = end.ok_or("an element of it is larger than a megabyte")?;
@@ -125,26 +122,33 @@ fn structure(list: &[Literal]) -> Result<(Vec<Field>, usize), String> {
             _ => &[],
         };
         for (index, axis) in axes.iter().enumerate() {
-            fields.push(Field { name: format!("{name}{axis}"), at: at + index * size, scalar });
+            fields.push(Field {
+                name: format!("{name}{axis}"),
+                at: at + index * size,
+                scalar: scalar.clone(),
+            });
         }
         at = end;
     }
     Ok((fields, at))
 }
 
-/// Bytes of a type that is no number we read.
-fn size_of(kind: &str) -> Option<usize> {
-    let letters = kind.get(1..)?;
-    let count: usize = letters.get(1..)?.parse().ok()?;
-    match letters.get(..1)? {
-        "S" | "a" | "V" | "b" | "f" | "c" => Some(count),
-        "U" => count.checked_mul(4),
-        _ => None,
+/// A type of number, or the name of what can only be passed over, and its size.
+fn typed(kind: &str) -> Result<(Result<Scalar, String>, usize), String> {
+    if let Some(scalar) = Scalar::named(kind) {
+        return Ok((Ok(scalar), scalar.size));
     }
-}
-
-fn unknown(kind: &str) -> String {
-    format!("its numbers are '{kind}'; floats of 4 or 8 bytes and whole numbers are read")
+    // |S12 is 12 bytes, <U3 is 3 characters of 4.
+    let count = || kind.get(2..).and_then(|count| count.parse::<usize>().ok());
+    let size = match kind.get(1..2) {
+        Some("S" | "a" | "V" | "b" | "f" | "c") => count(),
+        Some("U") => count().and_then(|count| count.checked_mul(4)),
+        // Python's own objects, which stand elsewhere.
+        Some("O") => Some(8),
+        _ => None,
+    };
+    let size = size.ok_or_else(|| format!("it holds '{kind}', which is no type of NumPy's"))?;
+    Ok((Err(kind.to_owned()), size))
 }
 
 #[cfg(test)]
@@ -191,7 +195,7 @@ mod tests {
     #[test]
     fn claims_and_damage() {
         for (text, part) in [
-            ("{'descr': '|O', 'fortran_order': False, 'shape': ()}", "'|O'"),
+            ("{'descr': '<q', 'fortran_order': False, 'shape': ()}", "'<q'"),
             (
                 "{'descr': [('a', '<f8', (999999999999,))], 'fortran_order': False, 'shape': (1,)}",
                 "megabyte",

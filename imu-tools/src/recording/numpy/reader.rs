@@ -69,7 +69,7 @@ struct Candidate {
     before: u64,
     stride: usize,
     at: usize,
-    scalar: Option<Scalar>,
+    scalar: Result<Scalar, String>,
     rows: u64,
 }
 
@@ -139,9 +139,10 @@ impl NumpyReader {
         let used = candidates.iter().zip(&found.columns).filter(|(_, c)| **c != Column::Other);
         for (candidate, &column) in used {
             let name = &candidate.name;
-            let scalar = candidate.scalar.ok_or_else(|| {
+            let scalar = candidate.scalar.clone().map_err(|kind| {
                 Error::data(format!(
-                    "{}: the numbers of '{name}' are of no type we read",
+                    "{} holds '{kind}' where '{name}' should be: floats of 4 or 8 bytes and whole \
+                     numbers are read",
                     self.name
                 ))
             })?;
@@ -424,7 +425,7 @@ impl Array {
                     before: 0,
                     stride: record,
                     at: field.at,
-                    scalar: field.scalar,
+                    scalar: field.scalar.clone(),
                     rows: *rows,
                 };
                 header.fields.iter().map(of).collect()
@@ -454,7 +455,7 @@ impl Array {
                         before,
                         stride: usize::try_from(stride).unwrap_or(usize::MAX),
                         at: usize::try_from(at).unwrap_or(usize::MAX),
-                        scalar: field.scalar,
+                        scalar: field.scalar.clone(),
                         rows,
                     }
                 };
