@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
 use crate::error::Error;
-use unfinished::Unfinished;
+pub(crate) use unfinished::Unfinished;
 pub use unfinished::clean_up_on_signals;
 
 /// A file in the making. It keeps no buffer: write large pieces.

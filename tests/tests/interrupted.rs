@@ -9,10 +9,12 @@ use imu_tests::recordings::Folder;
 
 #[test]
 fn ctrl_c_and_sigterm_leave_nothing_half_written() {
-    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+    for (signal, code, name) in
+        [("INT", 130, "long.bag"), ("TERM", 143, "long.csv"), ("TERM", 143, "long/")]
+    {
         let folder = Folder::new();
-        // A century of samples: it does not end by itself.
-        let out = folder.at("long.bag");
+        // Eight years of samples: it does not end by itself.
+        let out = folder.at(name);
         let mut program = imu()
             .args(["simulate", "--duration", "3000d", "--rate", "10", "-o", &out])
             .args(["--truth", &folder.at("truth.csv")])

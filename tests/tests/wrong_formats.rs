@@ -31,7 +31,8 @@ fn a_recording_is_read_whatever_its_name() {
     let folder = Folder::new();
     let block = simulated(SHORT, 1);
     let out = folder.at("out.csv");
-    for format in Format::ALL {
+    // EuRoC's are folders.
+    for format in Format::ALL.into_iter().filter(|format| *format != Format::Euroc) {
         let bytes = fs::read(folder.record(&format!("source.{}", format.name()), &block));
         let bytes = bytes.expect("written");
         for name in NAMES {

@@ -9,6 +9,7 @@ use super::progress;
 use super::reading::{Opened, Reading};
 use crate::error::Error;
 use crate::output;
+use crate::recording::euroc::data_file;
 use crate::recording::{Converted, Format, convert};
 use crate::scene::display_duration;
 
@@ -59,8 +60,14 @@ impl Convert {
                 "the recording and --json cannot both go to the standard output: name a file",
             ));
         }
+        // A name that says no format is found out before anything is read.
+        let format = self.format.map_or_else(|| Format::of(to), Ok)?;
+        let written = match format {
+            Format::Euroc => data_file(to),
+            _ => to.clone(),
+        };
         for file in from {
-            if same_file(file, to) {
+            if same_file(file, &written) {
                 return Err(Error::usage(format!(
                     "{} is the recording itself: name another file to write",
                     to.display()
@@ -68,15 +75,13 @@ impl Convert {
             }
         }
         // `imu convert night_*.bag`, the new name forgotten, must not cost a recording.
-        if from.len() > 1 && !self.force && to.is_file() {
+        if from.len() > 1 && !self.force && written.is_file() {
             return Err(Error::usage(format!(
                 "the last name is the file to write, and {} is there already: name a new one, or \
                  say --force",
                 to.display()
             )));
         }
-        // A name that says no format is found out before anything is read.
-        let format = self.format.map_or_else(|| Format::of(to), Ok)?;
         let Opened { source, names } = self.reading.open(from)?;
         let sink = super::create(to, Some(format))?;
         let bar = progress::bytes(source.bytes_total(), "converting");
@@ -146,7 +151,9 @@ fn same_file(from: &Path, to: &Path) -> bool {
     if from == Path::new("-") || to == Path::new("-") {
         return false;
     }
-    output::target(from) == output::target(to) || hard_linked(from, to)
+    let (source, target) = (output::target(from), output::target(to));
+    // A folder is a recording too, and the file to write may be the one that it holds.
+    source == target || to.is_file() && target.starts_with(&source) || hard_linked(from, to)
 }
 
 /// Whether both names are there and lead to one regular file.

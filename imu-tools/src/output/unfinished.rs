@@ -66,9 +66,11 @@ pub fn clean_up_on_signals() {
 #[cfg(unix)]
 fn remove(paths: &[PathBuf]) {
     use std::fs;
-    for path in paths {
-        // Whatever cannot be removed stays: there is nobody to tell.
-        let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    // What was made last goes first, so that folders are empty when their turn comes.
+    for path in paths.iter().rev() {
+        // Whatever cannot be removed stays, such as a folder that holds something by now: there is
+        // nobody to tell.
+        let _ = if path.is_dir() { fs::remove_dir(path) } else { fs::remove_file(path) };
     }
 }
 

@@ -10,6 +10,7 @@ mod writer;
 use std::path::{Path, PathBuf};
 
 pub use writer::EurocWriter;
+pub(crate) use writer::data_file;
 
 use super::noted::Noted;
 use super::{Note, ReadOptions, Source, open_file};

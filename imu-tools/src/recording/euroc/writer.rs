@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::output::Output;
+use crate::output::{Output, Unfinished};
 use crate::recording::csv::{push_integer, push_values};
 use crate::recording::{BLOCK_SAMPLES, Block, Sample, Sink};
 
@@ -25,12 +25,26 @@ pub struct EurocWriter {
     folder: PathBuf,
     /// Folders that were made for this, the outermost first.
     made: Vec<PathBuf>,
+    /// The same, for when the program is interrupted.
+    unfinished: Vec<Unfinished>,
     data: Option<Output>,
     text: Vec<u8>,
     gyroscope: VecDeque<Sample>,
     accelerometer: VecDeque<Sample>,
     last_ns: Option<i64>,
     steps: Vec<i64>,
+}
+
+/// The folder that the recording at `path` is written into: `imu0` in `path`, if that is a `mav0`, or
+/// in `path/mav0`.
+fn imu0(path: &Path) -> PathBuf {
+    let mav0 = path.file_name().is_some_and(|name| name == "mav0");
+    if mav0 { path.join("imu0") } else { path.join("mav0/imu0") }
+}
+
+/// The file that holds the samples of the recording at `path`.
+pub(crate) fn data_file(path: &Path) -> PathBuf {
+    imu0(path).join("data.csv")
 }
 
 impl EurocWriter {
@@ -42,13 +56,13 @@ impl EurocWriter {
         if path == Path::new("-") {
             return Err(Error::usage("EuRoC's recordings are folders: a pipe cannot be one"));
         }
-        let mav0 = path.file_name().is_some_and(|name| name == "mav0");
-        let folder = if mav0 { path.join("imu0") } else { path.join("mav0/imu0") };
+        let folder = imu0(path);
         let missing: Vec<&Path> = folder.ancestors().take_while(|f| !f.exists()).collect();
-        let made = missing.into_iter().rev().map(Path::to_owned).collect();
+        let made: Vec<PathBuf> = missing.into_iter().rev().map(Path::to_owned).collect();
         let mut writer = Self {
             folder,
-            made,
+            made: Vec::new(),
+            unfinished: Vec::new(),
             data: None,
             text: Vec::with_capacity(PIECE + 1024),
             gyroscope: VecDeque::new(),
@@ -57,8 +71,13 @@ impl EurocWriter {
             steps: Vec::new(),
         };
         writer.text.extend_from_slice(HEADER.as_bytes());
-        std::fs::create_dir_all(&writer.folder)
-            .map_err(|e| Error::io("make the folder", &writer.folder, e))?;
+        for folder in made {
+            let make = || std::fs::create_dir(&folder).map(|()| ((), folder.clone()));
+            let ((), unfinished) =
+                Unfinished::create(make).map_err(|e| Error::io("make the folder", &folder, e))?;
+            writer.unfinished.push(unfinished);
+            writer.made.push(folder);
+        }
         writer.data = Some(Output::create(&writer.folder.join("data.csv"))?);
         Ok(writer)
     }
