@@ -24,9 +24,12 @@ random_walk = 1e-4
 
 /// The calibration without the words that name its file.
 fn numbers(mut calibration: Value) -> Value {
-    for (place, word) in
-        [("/recording", "path"), ("/gyroscope", "topic"), ("/accelerometer", "topic")]
-    {
+    for (place, word) in [
+        ("/recording", "path"),
+        ("/recording", "paths"),
+        ("/gyroscope", "topic"),
+        ("/accelerometer", "topic"),
+    ] {
         let object = calibration.pointer_mut(place).and_then(Value::as_object_mut);
         object.expect("an object").remove(word).expect("a word");
     }
