@@ -119,7 +119,7 @@ fn mistakes_are_one_sentence_and_leave_no_file() {
         (&["mid", "-o", "-", "--truth", "/dev/stdout"], 2, "cannot both go to"),
         (&["mid", "-o", &bag, "--seed", "-1"], 2, "'-1'"),
         (&[&latin, "-o", &bag], 1, "latin.toml is no scene file: it is not text in UTF-8"),
-        (&["mid", "-o", &at(&folder, "a.mcap")], 2, "a.mcap"),
+        (&["mid", "-o", &at(&folder, "a.xlsx")], 2, "a.xlsx"),
         (&["mid", "-o", &nowhere], 1, "no such file or folder"),
         (&[&absent, "-o", &bag], 1, "cannot read"),
         (&[&scene, "-o", &bag], 1, "line 2: unknown field `sede`"),

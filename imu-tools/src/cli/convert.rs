@@ -33,10 +33,10 @@ Examples:
 #[derive(Args, Debug)]
 #[command(override_usage = "imu convert [OPTIONS] <FILE>... <NEW>", after_help = EXAMPLES)]
 pub(super) struct Convert {
-    /// The recordings (- for a pipe), and last the new file: .bag, .mcap or .csv, or - for a pipe
+    /// The recordings (- for a pipe), and last the new file: .bag, .mcap, .csv, a folder/ for EuRoC, or - for a pipe
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Write this format whatever the name: bag, mcap or csv (a pipe gets csv unless you say so)
+    /// Write this format whatever the name: bag, mcap, csv or euroc (a pipe gets csv unless you say so)
     #[arg(long = "to", value_name = "FORMAT")]
     format: Option<Format>,
     /// Write over a file that is there, after several recordings too

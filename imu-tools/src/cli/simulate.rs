@@ -43,10 +43,10 @@ pub(super) struct Simulate {
     /// low, mid or high, or a TOML scene file
     #[arg(value_name = "SCENE", default_value = "mid")]
     scene: String,
-    /// Where to write: FILE.bag (ROS 1), FILE.mcap (ROS 2), FILE.csv, or - for a pipe
+    /// Where to write: FILE.bag (ROS 1), FILE.mcap (ROS 2), FILE.csv, FOLDER/ (EuRoC), or - for a pipe
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Write this format whatever the name: bag, mcap or csv (a pipe gets csv unless you say so)
+    /// Write this format whatever the name: bag, mcap, csv or euroc (a pipe gets csv unless you say so)
     #[arg(long = "to", value_name = "FORMAT")]
     format: Option<Format>,
     /// Move on the classic ellipse instead of standing still
