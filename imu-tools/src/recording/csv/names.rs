@@ -107,7 +107,7 @@ impl Name {
         name
     }
 
-    /// Takes out a unit between sensor and axis, gyro_dps_x, or before an index, gyro_rad[0].
+    /// Takes out a unit between sensor and axis, `gyro_dps_x`, or before an index, `gyro_rad[0]`.
     fn take_inner_unit(&mut self) {
         let before = match (self.index, self.words.split_last()) {
             (Some(_), _) => self.words.as_slice(),

@@ -7,6 +7,7 @@
 //! Format: NumPy enhancement proposal 1 (Kern 2007), versions 1 to 3.
 
 mod archive;
+mod arrays;
 mod header;
 mod literal;
 mod reader;
