@@ -5,9 +5,7 @@
 //! that memory stays at 2 MB however long the recording is. A block keeps the number of samples
 //! that were there, and a hole is blocks with none: time goes on in it.
 //!
-//! A sample that is not finite, or further from the median of the first 15 than 4096 times their
-//! median absolute deviation, counts as missing: the rule of an
-//! [`AllanLadder`](imu_core::allan::AllanLadder), from more samples.
+//! A sample that is not finite counts as missing.
 //!
 //! ```
 //! use imu_tools::calibrate::block_means::BlockMeans;
@@ -21,12 +19,6 @@
 
 /// Blocks are merged when there are so many.
 const MOST: usize = 1 << 16;
-/// Samples that teach the bound beyond which a sample is a glitch …
-const LEARN: usize = 15;
-/// … which is this many times their median absolute deviation.
-const BOUND_IN_DEVIATIONS: f64 = 4096.0;
-/// A longer hole among the first samples ends the learning.
-const LEARN_THROUGH: u64 = 255;
 
 /// The three axes of a sensor as means of blocks of samples.
 #[derive(Clone, Debug)]
@@ -41,9 +33,6 @@ pub struct BlockMeans {
     passed: u64,
     /// Samples are kept relative to this, so that a large offset costs no digits.
     reference: [f64; 3],
-    bound: [f64; 3],
-    /// The first samples, missing ones as NaN, until there are enough to learn from.
-    waiting: Option<Vec<[f64; 3]>>,
 }
 
 /// The samples of one block.
@@ -56,6 +45,18 @@ pub(super) struct Block {
 }
 
 impl Block {
+    /// The block and these samples, one after the other.
+    #[inline]
+    fn with(&self, samples: &[[f64; 3]], reference: &[f64; 3]) -> Self {
+        let mut sum = self.sum;
+        for sample in samples {
+            for axis in 0..3 {
+                sum[axis] += sample[axis] - reference[axis];
+            }
+        }
+        Self { samples: self.samples + samples.len() as u64, sum }
+    }
+
     fn merge(pair: &[Self]) -> Self {
         let mut both = Self::default();
         for block in pair {
@@ -85,41 +86,35 @@ impl BlockMeans {
             open: Block::default(),
             passed: 0,
             reference: [0.0; 3],
-            bound: [f64::MAX; 3],
-            waiting: Some(Vec::new()),
         }
     }
 
     /// Takes consecutive samples.
     pub fn extend(&mut self, samples: &[[f64; 3]]) {
-        for sample in samples {
-            match &mut self.waiting {
-                None => self.take(sample),
-                Some(waiting) => {
-                    waiting.push(*sample);
-                    if waiting.iter().filter(|s| finite(s)).count() == LEARN {
-                        self.learn();
-                    }
-                }
-            }
+        let mut rest = samples;
+        while !rest.is_empty() {
+            let room = usize::try_from(self.length - self.passed).unwrap_or(usize::MAX);
+            let (now, later) = rest.split_at(room.min(rest.len()));
+            let with_all = self.open.with(now, &self.reference);
+            self.open = if with_all.sum.iter().all(|sum| sum.is_finite()) {
+                with_all
+            } else {
+                now.iter().filter(|sample| finite(sample)).fold(self.open, |open, sample| {
+                    open.with(std::slice::from_ref(sample), &self.reference)
+                })
+            };
+            self.pass(now.len() as u64);
+            rest = later;
         }
     }
 
     /// `n` samples did not come: their time passes.
     pub fn missing(&mut self, n: u64) {
-        if let Some(waiting) = &mut self.waiting {
-            if n <= LEARN_THROUGH && !waiting.is_empty() {
-                waiting.extend((0..n).map(|_| [f64::NAN; 3]));
-                return;
-            }
-            self.learn();
-        }
         self.pass(n);
     }
 
     /// A new beginning: nothing is known of the time since the last sample.
     pub fn restart(&mut self) {
-        self.learn();
         self.open = Block::default();
         self.passed = 0;
         if let Some(last) = self.segments.last_mut() {
@@ -132,11 +127,10 @@ impl BlockMeans {
         }
     }
 
-    /// A [`restart`](Self::restart) after which samples may lie elsewhere: the next ones show anew what
-    /// is normal.
-    pub fn next_record(&mut self) {
+    /// A [`restart`](Self::restart) after which samples lie about `reference`.
+    pub fn next_record(&mut self, reference: [f64; 3]) {
         self.restart();
-        self.waiting = Some(Vec::new());
+        self.reference = reference;
     }
 
     /// Samples a block, a power of two.
@@ -145,7 +139,7 @@ impl BlockMeans {
         self.length
     }
 
-    /// How many blocks are full. Until there were 15 samples there are none.
+    /// How many blocks are full.
     #[must_use]
     pub fn blocks(&self) -> usize {
         self.blocks
@@ -155,7 +149,6 @@ impl BlockMeans {
     #[must_use]
     pub fn merged(&self, samples: u64) -> Self {
         let mut merged = self.clone();
-        merged.learn();
         while merged.length < samples && merged.blocks() > 2 {
             merged.double();
         }
@@ -165,40 +158,6 @@ impl BlockMeans {
     /// The stretches between restarts; nothing links one with the next.
     pub(super) fn segments(&self) -> &[Vec<Block>] {
         &self.segments
-    }
-
-    /// Takes reference and bound from the samples that wait, then takes those samples.
-    fn learn(&mut self) {
-        let Some(waiting) = self.waiting.take_if(|waiting| waiting.iter().any(finite)) else {
-            return;
-        };
-        for axis in 0..3 {
-            let column = || waiting.iter().filter(|s| finite(s)).map(|s| s[axis]);
-            let middle = median(column());
-            let bound = BOUND_IN_DEVIATIONS * median(column().map(|x| (x - middle).abs()));
-            self.reference[axis] = middle;
-            self.bound[axis] = if bound > 0.0 { bound } else { f64::MAX };
-        }
-        for sample in &waiting {
-            self.take(sample);
-        }
-    }
-
-    #[inline]
-    fn take(&mut self, sample: &[f64; 3]) {
-        let mut offset = [0.0; 3];
-        let mut inside = true;
-        for axis in 0..3 {
-            offset[axis] = sample[axis] - self.reference[axis];
-            inside &= offset[axis].abs() <= self.bound[axis];
-        }
-        if inside {
-            self.open.samples += 1;
-            for (sum, offset) in self.open.sum.iter_mut().zip(offset) {
-                *sum += offset;
-            }
-        }
-        self.pass(1);
     }
 
     /// Lets the time of `n` samples pass.
@@ -257,13 +216,6 @@ fn finite(sample: &[f64; 3]) -> bool {
     sample.iter().all(|x| x.is_finite())
 }
 
-/// The median (the lower of two); 0 of none.
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -295,14 +247,15 @@ mod tests {
     }
 
     #[test]
-    fn holes_pass_time_and_glitches_are_holes() {
+    fn holes_pass_time_and_what_is_no_number_is_a_hole() {
         let mut collected = BlockMeans::new();
         collected.missing(10); // before the first sample: nothing to keep
         for k in 0..4096 {
             match k {
-                3 => collected.extend(&[[1e4, 0.0, 0.0].map(|x| x * 1e4)]),
+                3 => collected.extend(&[[f64::NEG_INFINITY, 0.0, 0.0]]),
                 100 => collected.extend(&[[0.0, f64::NAN, 0.0]]),
-                500 => collected.extend(&[[0.0, 0.0, 1e30]]),
+                500 => collected.extend(&[row(499), [0.0, 0.0, f64::INFINITY], row(501)]),
+                499 | 501 => {}
                 1000..1100 => collected.missing(1),
                 _ => collected.extend(&[row(k)]),
             }

@@ -102,30 +102,70 @@ impl Checker {
 
     /// Takes consecutive samples; what is not finite is passed over.
     pub(super) fn take(&mut self, values: &[[f64; 3]]) {
+        if self.take_unremarkable(values) {
+            return;
+        }
         for value in values {
-            if !(value[0] + value[1] + value[2]).is_finite() {
-                continue;
+            if (value[0] + value[1] + value[2]).is_finite() {
+                self.take_one(value);
             }
-            self.samples += 1;
+        }
+    }
+
+    /// Takes samples of which none reaches an end of the range, none repeats the one before on all
+    /// axes, and all are finite: most samples are such. Does nothing and returns `false` if one is not.
+    fn take_unremarkable(&mut self, values: &[[f64; 3]]) -> bool {
+        if self.first.len() < FIRST {
+            return false;
+        }
+        let (low, high) = (self.low.map(|end| end.value), self.high.map(|end| end.value));
+        let (mut last, mut same) = (self.last, [0; 3]);
+        let mut unremarkable = true;
+        for value in values {
             let mut all = true;
-            for (axis, &x) in value.iter().enumerate() {
-                self.low[axis].take(x, x < self.low[axis].value);
-                self.high[axis].take(x, x > self.high[axis].value);
-                let same = x == self.last[axis];
-                self.same[axis] += u64::from(same);
-                all &= same;
+            for axis in 0..3 {
+                let x = value[axis];
+                unremarkable &= (low[axis] < x) & (x < high[axis]); // not for a NaN
+                let repeats = x == last[axis];
+                same[axis] += u64::from(repeats);
+                all &= repeats;
             }
-            if all {
-                self.all_same += 1;
-                self.run += 1;
-                self.longest = self.longest.max(self.run);
-            } else {
-                self.run = 1;
-            }
-            self.last = *value;
-            if self.first.len() < FIRST {
-                self.first.push(*value);
-            }
+            unremarkable &= !all;
+            last = *value;
+        }
+        if !unremarkable {
+            return false;
+        }
+        if !values.is_empty() {
+            self.low.iter_mut().chain(&mut self.high).for_each(|end| end.run = 0);
+            self.run = 1;
+        }
+        self.samples += values.len() as u64;
+        self.same.iter_mut().zip(same).for_each(|(sum, more)| *sum += more);
+        self.last = last;
+        true
+    }
+
+    fn take_one(&mut self, value: &[f64; 3]) {
+        self.samples += 1;
+        let mut all = true;
+        for (axis, &x) in value.iter().enumerate() {
+            self.low[axis].take(x, x < self.low[axis].value);
+            self.high[axis].take(x, x > self.high[axis].value);
+            let same = x == self.last[axis];
+            self.same[axis] += u64::from(same);
+            all &= same;
+        }
+        if all {
+            self.all_same += 1;
+            self.run += 1;
+            self.longest = self.longest.max(self.run);
+        } else {
+            self.run = 1;
+        }
+        self.last = *value;
+        if self.first.len() < FIRST {
+            self.first.push(*value);
         }
     }
 

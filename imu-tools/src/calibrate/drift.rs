@@ -79,17 +79,14 @@ pub(super) fn examine(
     let block_s = means.length() as f64 * tau0_s;
     let Some(first) = means.segments().first() else { return drift };
     let sampling = Sampling { tau0_s, difference: Difference::Allan, windows: 4, records: 1 };
-    let noise_after = |cut: usize| {
-        let octaves = without_start(&octaves, means, cut);
-        octaves.map(|axis| Noise::of(&fit_noise_from(&axis, sampling, from)))
-    };
 
     // From the middle towards the beginning.
     let half = first.len() / 2;
+    let noise = without_start(&octaves, means, half)
+        .map(|axis| Noise::of(&fit_noise_from(&axis, sampling, from)));
     let mut cut = half;
     let mut end_of_warm_up = None;
     while cut >= FEWEST {
-        let noise = noise_after(cut);
         let strange = |from: usize| {
             let stretch = first.get(from..cut).unwrap_or_default();
             goes_too_far(stretch, block_s, &noise).is_some()

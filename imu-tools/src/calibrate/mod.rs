@@ -1,7 +1,7 @@
 //! From samples to noise parameters.
 //!
-//! A recording is read on one thread and computed on another, block by block, in memory that does
-//! not grow: stamps go to a grid ([`crate::recording::Timeline`]), values into a ladder of Allan
+//! A recording is read on one thread, and each sensor computed on another, block by block, in memory
+//! that does not grow: stamps go to a grid ([`crate::recording::Timeline`]), values into a ladder of Allan
 //! variances, and at the end `imu_core::allan` fits N and K to it (or another [`Estimator`] does).
 //!
 //! ```
@@ -21,8 +21,11 @@ pub mod batch;
 pub mod block_means;
 mod checks;
 mod drift;
+mod fits;
 pub mod five_terms;
 mod gravity;
+mod lane;
+mod limits;
 pub mod maximum_likelihood;
 mod refusal;
 mod sensor;
@@ -35,16 +38,22 @@ mod window;
 pub use checks::Checks;
 pub use temperature::TemperatureRange;
 
-use imu_core::allan::{Contradiction, Octave, Parameter};
+use imu_core::allan::{AllanLadder, Contradiction, Octave, Parameter};
 
 use crate::error::Error;
 use crate::recording::{Note, Source, Stream, Summary, read_ahead};
+use lane::Lane;
 use sensor::Pipeline;
 use temperature::Thermometer;
 use window::Window;
 
 /// Octaves of τ that a ladder holds here: at 1 kHz the longest is 12 days.
 pub const LEVELS: usize = 31;
+
+/// Windows a τ: statistically as good as full overlap.
+const WINDOWS: usize = 4;
+
+type SensorLadder = AllanLadder<f64, 3, LEVELS, WINDOWS>;
 
 /// What to leave out, and how to estimate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -234,26 +243,37 @@ pub fn examine(
     mut progress: impl FnMut(Progress),
 ) -> Result<Examined, Error> {
     let mut window = Window::new(options);
-    let mut gyroscope = Pipeline::new(SensorKind::Gyroscope, options);
-    let mut accelerometer = Pipeline::new(SensorKind::Accelerometer, options);
     let mut temperature = Thermometer::default();
     let mut samples = 0;
     let mut record = 0;
-    let mut source = read_ahead(source, |block, at| {
-        if at.record != record {
-            record = at.record;
-            window = Window::new(options);
-            gyroscope.next_record();
-            accelerometer.next_record();
-        }
-        window.open(block);
-        gyroscope.push(window.cut(&block.gyroscope));
-        accelerometer.push(window.cut(&block.accelerometer));
-        temperature.push(&block.temperature);
-        samples += block.gyroscope.len().max(block.accelerometer.len()) as u64;
-        progress(Progress { bytes: at.bytes, samples });
-        Ok(())
+    let (mut source, gyroscope, accelerometer) = std::thread::scope(|scope| {
+        let lane = |kind| Lane::new(scope, Pipeline::new(kind, options));
+        let (gyroscope, accelerometer) =
+            (lane(SensorKind::Gyroscope), lane(SensorKind::Accelerometer));
+        let source = read_ahead(source, |block, at| {
+            if at.record != record {
+                record = at.record;
+                window = Window::new(options);
+                gyroscope.next_record();
+                accelerometer.next_record();
+            }
+            window.open(block);
+            temperature.push(&block.temperature);
+            samples += block.gyroscope.len().max(block.accelerometer.len()) as u64;
+            let range = window.cut(&block.gyroscope);
+            gyroscope.take(&mut block.gyroscope, range);
+            let range = window.cut(&block.accelerometer);
+            accelerometer.take(&mut block.accelerometer, range);
+            progress(Progress { bytes: at.bytes, samples });
+            Ok(())
+        })?;
+        Ok::<_, Error>((source, gyroscope.finish()?, accelerometer.finish()?))
     })?;
+    let named = |noise: Option<SensorNoise>, topic: &str| {
+        noise.map(|noise| SensorNoise { topic: topic.to_owned(), ..noise })
+    };
+    let gyroscope = named(gyroscope, source.gyroscope());
+    let accelerometer = named(accelerometer, source.accelerometer());
 
     let (mut remarks, mut warnings) = (Vec::new(), Vec::new());
     for note in source.take_notes() {
@@ -262,8 +282,6 @@ pub fn examine(
             Note::Warning(text) => warnings.push(text),
         }
     }
-    let gyroscope = gyroscope.finish(source.gyroscope());
-    let accelerometer = accelerometer.finish(source.accelerometer());
     let mut refusal = refusal::of_samples(path, &gyroscope, &accelerometer, options);
     for (record, mean) in accelerometer.iter().flat_map(|sensor| &sensor.record_means) {
         let name = source.record_name(*record);

@@ -17,7 +17,7 @@
 
 use std::collections::VecDeque;
 
-use super::sensor::Limits;
+use super::limits::Limits;
 use super::usual::{Usual, WindowStatistics};
 use crate::recording::Event;
 
@@ -28,7 +28,7 @@ pub(super) const RING: usize = 512;
 /// In a recording of fewer windows nothing is judged.
 const FEWEST: usize = 16;
 /// The usual is learnt anew after so many windows.
-const RELEARN: u64 = 16;
+const RELEARN: u64 = 64;
 /// Spreads from the usual beyond which a window is disturbed: for Gaussian noise, less than one of
 /// 10¹⁴; real noise changes a little with time and temperature.
 pub(super) const BEYOND: f64 = 8.0;
@@ -152,7 +152,7 @@ impl Stillness {
         to: &mut impl FnMut(Event<'_>),
     ) {
         if self.window == 0 {
-            self.window = ((1.0 / period_s) as usize).clamp(16, 2048);
+            self.window = window(1.0 / period_s);
         }
         self.limits = limits;
         match event {
@@ -347,6 +347,13 @@ impl Stillness {
             self.spare.push(window);
         }
     }
+}
+
+/// Samples a window at this rate (Hz). Ladders are fastest where windows end with their chunks of 64.
+fn window(rate: f64) -> usize {
+    const CHUNK: usize = 64;
+    let second = (rate as usize).clamp(16, 2048);
+    if second < CHUNK { second } else { (second + CHUNK / 2) / CHUNK * CHUNK }
 }
 
 #[cfg(test)]

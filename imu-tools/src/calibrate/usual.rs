@@ -7,7 +7,7 @@
 
 use std::collections::VecDeque;
 
-use super::sensor::Limits;
+use super::limits::Limits;
 use super::stillness::{BEYOND, GROUP, RING};
 
 /// Standard deviations below the mean of a Gaussian's quantile at 25 %, and from there to 5 %.
@@ -34,27 +34,45 @@ pub(super) struct WindowStatistics {
 impl WindowStatistics {
     /// Of the samples within limits, if they are half of `full` at least.
     pub(super) fn of(values: &[[f64; 3]], full: usize, limits: &Limits) -> Option<Self> {
-        let origin = values.iter().find(|value| limits.hold(value))?;
-        let (mut n, mut sum, mut squares) = (0_u32, [0.0; 3], [0.0; 3]);
-        for value in values.iter().filter(|value| limits.hold(value)) {
-            n += 1;
-            for axis in 0..3 {
-                let offset = value[axis] - origin[axis];
-                sum[axis] += offset;
-                squares[axis] += offset * offset;
-            }
-        }
-        if (n as usize) < (full / 2).max(2) {
+        let within = limits.hold_all(values);
+        let (origin, samples, sum, squares) = if within {
+            let origin = values.first()?;
+            let (sum, squares) = moments(values.iter(), origin);
+            (origin, values.len(), sum, squares)
+        } else {
+            let within = || values.iter().filter(|value| limits.hold(value));
+            let origin = within().next()?;
+            let (sum, squares) = moments(within(), origin);
+            (origin, within().count(), sum, squares)
+        };
+        if samples < (full / 2).max(2) {
             return None;
         }
-        let count = f64::from(n);
+        let count = samples as f64;
         let mean = [0, 1, 2].map(|axis| origin[axis] + sum[axis] / count);
         let log_variance = [0, 1, 2].map(|axis| {
             let about = squares[axis] - sum[axis] * sum[axis] / count;
             (about / (count - 1.0)).max(f64::MIN_POSITIVE).ln()
         });
-        Some(Self { mean, log_variance, samples: n as usize })
+        Some(Self { mean, log_variance, samples })
     }
+}
+
+/// Sums of the values less `origin`, and of their squares.
+#[inline]
+fn moments<'a>(
+    values: impl Iterator<Item = &'a [f64; 3]>,
+    origin: &[f64; 3],
+) -> ([f64; 3], [f64; 3]) {
+    let (mut sum, mut squares) = ([0.0; 3], [0.0; 3]);
+    for value in values {
+        for axis in 0..3 {
+            let offset = value[axis] - origin[axis];
+            sum[axis] += offset;
+            squares[axis] += offset * offset;
+        }
+    }
+    (sum, squares)
 }
 
 /// What is usual of one axis.

@@ -1,5 +1,7 @@
 //! The part of each record between --from and --to.
 
+use std::ops::Range;
+
 use super::Options;
 use crate::recording::{Block, Sample};
 
@@ -28,18 +30,16 @@ impl Window {
         }
     }
 
-    /// The samples of a block that lie within.
-    pub(super) fn cut<'a>(&self, samples: &'a [Sample]) -> &'a [Sample] {
-        let Some(first) = self.first else { return samples };
-        if self.from_ns == i64::MIN && self.to_ns == i64::MAX {
-            return samples;
-        }
+    /// Which samples of a block lie within.
+    pub(super) fn cut(&self, samples: &[Sample]) -> Range<usize> {
+        let everything = self.from_ns == i64::MIN && self.to_ns == i64::MAX;
+        let Some(first) = self.first.filter(|_| !everything) else { return 0..samples.len() };
         let within = |sample: &Sample| {
             let at = sample.stamp_ns.saturating_sub(first);
             at >= self.from_ns && at <= self.to_ns
         };
         let start = samples.iter().position(within).unwrap_or(samples.len());
         let end = samples.iter().rposition(within).map_or(start, |last| last + 1);
-        samples.get(start..end).unwrap_or_default()
+        start..end
     }
 }

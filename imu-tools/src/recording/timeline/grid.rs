@@ -138,7 +138,7 @@ impl Grid {
 
     /// Takes a sample in as the next, and lets the grid follow; the number of samples that the
     /// slow mean shows to be missing before it.
-    #[inline]
+    #[inline(always)]
     pub fn accept(&mut self, error: f64) -> u64 {
         let Bounds { widest, usual, slip, phase_gain, period_gain, .. } = self.bounds;
         let (mut wide, mut error) = (error, error);
