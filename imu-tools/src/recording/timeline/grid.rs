@@ -138,7 +138,7 @@ impl Grid {
 
     /// Takes a sample in as the next, and lets the grid follow; the number of samples that the
     /// slow mean shows to be missing before it.
-    #[inline(always)]
+    #[inline]
     pub fn accept(&mut self, error: f64) -> u64 {
         let Bounds { widest, usual, slip, phase_gain, period_gain, .. } = self.bounds;
         let (mut wide, mut error) = (error, error);
@@ -157,6 +157,42 @@ impl Grid {
             self.bounds = Bounds::of(self.period, self.jitter);
         }
         if self.slow.abs() > slip { self.slipped() } else { 0 }
+    }
+
+    /// Takes in samples as long as each is in its place, later than the one before, and shows none to
+    /// be missing, as most do: the same as [`accept`](Self::accept) of each, faster. How many it took.
+    pub fn follow(&mut self, samples: &[Sample], mut last_ns: i64) -> usize {
+        let mut taken = 0;
+        loop {
+            let Bounds { near, slip, phase_gain, period_gain, .. } = self.bounds;
+            let Self { origin, mut next, mut period, mut squares, mut jitter, mut slow, .. } =
+                *self;
+            let to_bounds = Bounds::EVERY - self.accepted % Bounds::EVERY;
+            let mut followed = 0;
+            for sample in samples.iter().skip(taken).take(to_bounds as usize) {
+                let error = sample.stamp_ns.saturating_sub(origin) as f64 - next;
+                let slower = slow + (error - slow) * (1.0 / SLOW);
+                let in_place = error.abs() <= near && slower.abs() <= slip;
+                if !in_place || sample.stamp_ns <= last_ns {
+                    break;
+                }
+                last_ns = sample.stamp_ns;
+                slow = slower;
+                squares += error * error;
+                jitter += (error * error - jitter) * (1.0 / JITTER);
+                next += period + phase_gain * error;
+                period += period_gain * error;
+                followed += 1;
+            }
+            *self = Self { next, period, squares, jitter, slow, ..self.clone() };
+            self.points += followed;
+            self.accepted += followed;
+            taken += followed as usize;
+            if followed < to_bounds {
+                return taken;
+            }
+            self.bounds = Bounds::of(period, jitter);
+        }
     }
 
     /// The slow mean is away by a sample: one is missing, or the clock was adjusted.

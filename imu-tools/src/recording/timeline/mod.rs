@@ -132,7 +132,7 @@ impl Timeline {
     /// Takes the next samples and hands on what can be decided: the first [`PREFIX`] samples are
     /// held back until the rate is known, later ones only where a gap may begin.
     pub fn push(&mut self, samples: &[Sample], mut to: impl FnMut(Event<'_>)) {
-        let rest = self.follow(samples, &mut to);
+        let rest = self.follow(samples);
         self.take_in(rest);
         if !self.pending.is_empty() && (self.grid.is_some() || self.pending.len() >= PREFIX) {
             self.decide(false, &mut to);
@@ -143,24 +143,14 @@ impl Timeline {
 
     /// Places samples as long as each is where it belongs, as most are, without holding them back
     /// first. Returns those that are left.
-    fn follow<'a>(
-        &mut self,
-        samples: &'a [Sample],
-        to: &mut impl FnMut(Event<'_>),
-    ) -> &'a [Sample] {
-        let Some(mut grid) = self.grid.take_if(|_| self.pending.is_empty()) else { return samples };
-        self.values.reserve(samples.len());
-        let mut rest = samples;
-        while let Some((sample, after)) = rest.split_first() {
-            let in_order = self.last.is_none_or(|last| sample.stamp_ns > last.stamp_ns);
-            if !in_order || !grid.near(grid.error(sample.stamp_ns)) {
-                break;
-            }
-            self.place(&mut grid, sample, to);
-            self.last = Some(*sample);
-            rest = after;
+    fn follow<'a>(&mut self, samples: &'a [Sample]) -> &'a [Sample] {
+        let (Some(grid), Some(last)) = (&mut self.grid, self.last) else { return samples };
+        if !self.pending.is_empty() {
+            return samples;
         }
-        self.grid = Some(grid);
+        let (placed, rest) = samples.split_at(grid.follow(samples, last.stamp_ns));
+        self.values.extend(placed.iter().map(|sample| sample.value));
+        self.last = placed.last().copied().or(self.last);
         rest
     }
 
@@ -275,23 +265,17 @@ impl Timeline {
                     grid.restart(shift);
                 }
             }
-            self.place(&mut grid, sample, to);
+            let missed = grid.accept(grid.error(sample.stamp_ns));
+            if missed > 0 {
+                self.missing(missed, grid.elapsed(), to);
+            }
+            self.values.push(sample.value);
             placed += 1;
         }
         self.hand_on(to);
         self.grid = Some(grid);
         self.pending = pending;
         self.pending.drain(..placed);
-    }
-
-    /// The sample is the next one.
-    #[inline]
-    fn place(&mut self, grid: &mut Grid, sample: &Sample, to: &mut impl FnMut(Event<'_>)) {
-        let missed = grid.accept(grid.error(sample.stamp_ns));
-        if missed > 0 {
-            self.missing(missed, grid.elapsed(), to);
-        }
-        self.values.push(sample.value);
     }
 
     /// Hands on the readings before a gap, and the gap.

@@ -295,3 +295,33 @@ proptest! {
         prop_assert_eq!(outcome.offsets.len(), stamps.len());
     }
 }
+
+/// The fast way through samples in their place is the slow way, to the bit.
+#[test]
+fn following_is_accepting() {
+    let mut random = Random(5);
+    let samples: Vec<Sample> = (0..5000)
+        .map(|i| {
+            // A lost sample at 2000, which only the slow mean shows.
+            let late = 0.35 * PERIOD as f64 * random.normal().clamp(-2.0, 2.0);
+            let place = i + i64::from(i >= 2000);
+            Sample { stamp_ns: START + place * PERIOD + late as i64, value: [0.0; 3] }
+        })
+        .collect();
+    let mut fast = Grid::new(START, PERIOD as f64 * 1.0001, 0.0, 0.0);
+    let mut slow = fast.clone();
+    let (mut last_ns, mut rest, mut followed) = (i64::MIN, samples.as_slice(), 0);
+    while !rest.is_empty() {
+        let (taken, after) = rest.split_at(fast.follow(rest, last_ns));
+        let slips = taken.iter().map(|s| slow.accept(slow.error(s.stamp_ns))).sum::<u64>();
+        assert_eq!((format!("{fast:?}"), slips), (format!("{slow:?}"), 0));
+        followed += taken.len();
+        rest = after;
+        if let Some((sample, after)) = after.split_first() {
+            fast.accept(fast.error(sample.stamp_ns));
+            slow.accept(slow.error(sample.stamp_ns));
+            (rest, last_ns) = (after, sample.stamp_ns);
+        }
+    }
+    assert!((2000..5000).contains(&followed), "{followed}");
+}
