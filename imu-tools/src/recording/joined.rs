@@ -8,7 +8,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Block, Note, ReadOptions, Sample, Source, Stream, open, timeline};
+use super::{Block, Note, ReadOptions, Sample, Source, Stream, add_streams, open, timeline};
 use crate::error::Error;
 
 /// Whoever leaves a sensor for longer has switched it off: the limit of a [`timeline`], in ns.
@@ -380,20 +380,6 @@ fn mean_length(samples: &[Sample]) -> Option<f64> {
         count += 1.0;
     }
     (count > 0.0).then(|| sum.iter().map(|x| x * x).sum::<f64>().sqrt() / count)
-}
-
-/// Adds the messages of one file to those of the files before it.
-fn add_streams(all: &mut Vec<Stream>, more: Vec<Stream>) {
-    for stream in more {
-        let same = |s: &&mut Stream| s.name == stream.name && s.type_name == stream.type_name;
-        match all.iter_mut().find(same) {
-            Some(before) => {
-                before.messages += stream.messages;
-                before.used |= stream.used;
-            }
-            None => all.push(stream),
-        }
-    }
 }
 
 #[cfg(test)]

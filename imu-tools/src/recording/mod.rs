@@ -1,4 +1,4 @@
-//! Recordings: one format a file, one stream of samples out of all of them.
+//! Recordings: one format a folder, one stream of samples out of all of them.
 //!
 //! A [`Source`] fills [`Block`]s with the samples of both sensors, in the order of the file, in SI
 //! units, stamped in integer nanoseconds. The two sensors of a block are independent: each has its
@@ -105,6 +105,14 @@ impl Block {
         self.gyroscope.clear();
         self.accelerometer.clear();
         self.temperature.clear();
+    }
+
+    /// Whether one more sample of each sensor fits.
+    #[inline]
+    fn has_room(&self) -> bool {
+        self.gyroscope.len() < BLOCK_SAMPLES
+            && self.accelerometer.len() < BLOCK_SAMPLES
+            && self.temperature.len() < BLOCK_SAMPLES
     }
 }
 
@@ -305,6 +313,20 @@ pub fn create_as(path: &Path, format: Format) -> Result<Box<dyn Sink>, Error> {
         Format::Csv => Box::new(csv::CsvWriter::create(path)?),
         Format::Euroc => Box::new(euroc::EurocWriter::create(path)?),
     })
+}
+
+/// Adds the streams of a file to those of the files before it.
+fn add_streams(all: &mut Vec<Stream>, more: Vec<Stream>) {
+    for stream in more {
+        let same = |s: &&mut Stream| s.name == stream.name && s.type_name == stream.type_name;
+        match all.iter_mut().find(same) {
+            Some(before) => {
+                before.messages += stream.messages;
+                before.used |= stream.used;
+            }
+            None => all.push(stream),
+        }
+    }
 }
 
 /// Walks both sensors of a block by time; samples of one instant come together.

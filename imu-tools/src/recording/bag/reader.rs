@@ -9,7 +9,7 @@ use super::connection;
 use super::damage::{Among, TAIL, next_record};
 use super::record::{Header, prefixed};
 use super::repeat::Repeat;
-use super::samples::{Samples, has_room};
+use super::samples::Samples;
 use super::unpack::Compression;
 use super::{MAGIC, op};
 use crate::error::Error;
@@ -272,7 +272,7 @@ impl BagReader {
         let Some(repeat) = self.repeat else { return };
         let mut bytes = self.bytes.at_hand();
         let mut used = 0;
-        while has_room(block)
+        while block.has_room()
             && let Some((time, payload)) = repeat.next(bytes)
         {
             if !self.samples.message(payload, time, repeat.role, block) {
@@ -465,7 +465,7 @@ impl Source for BagReader {
         block.clear();
         loop {
             self.repeated(block);
-            if !has_room(block) {
+            if !block.has_room() {
                 break;
             }
             if !self.record(block)? {

@@ -3,9 +3,7 @@
 use super::imu_message::ImuMessage;
 use super::temperature_message::TemperatureMessage;
 use crate::recording::topics::Role;
-use crate::recording::{
-    BLOCK_SAMPLES, Block, ForceUnit, RateUnit, ReadOptions, Sample, Temperature,
-};
+use crate::recording::{Block, ForceUnit, RateUnit, ReadOptions, Sample, Temperature};
 
 /// Takes messages, and counts what is strange about them.
 #[derive(Clone, Debug)]
@@ -106,12 +104,4 @@ impl Samples {
         }
         strange
     }
-}
-
-/// Whether another message fits.
-#[inline]
-pub fn has_room(block: &Block) -> bool {
-    block.gyroscope.len() < BLOCK_SAMPLES
-        && block.accelerometer.len() < BLOCK_SAMPLES
-        && block.temperature.len() < BLOCK_SAMPLES
 }

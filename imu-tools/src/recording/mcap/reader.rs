@@ -12,7 +12,7 @@ use super::{MAGIC, op};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
 use crate::recording::inside::Compression;
-use crate::recording::ros2::{Recorded, Taken, has_room, holds};
+use crate::recording::ros2::{Recorded, Taken, holds};
 use crate::recording::topics::{Connection, Topics};
 use crate::recording::{Block, Note, ReadOptions, Source, Stream};
 
@@ -280,7 +280,7 @@ impl McapReader {
             bytes = bytes.get(..bytes.len().min(inside.unwrap_or(usize::MAX))).unwrap_or_default();
         }
         let mut used = 0;
-        while has_room(block)
+        while block.has_room()
             && let Some((time, payload)) = repeat.next(bytes)
         {
             let time_ns = i64::try_from(time).unwrap_or(i64::MAX);
@@ -523,7 +523,7 @@ impl McapReader {
 impl Source for McapReader {
     fn next_block(&mut self, block: &mut Block) -> Result<bool, Error> {
         block.clear();
-        while has_room(block) {
+        while block.has_room() {
             if !self.record(block)? {
                 if !self.topics.complete() {
                     return Err(self.topics.not_found(self.input.path()));
@@ -532,9 +532,7 @@ impl Source for McapReader {
                 break;
             }
         }
-        Ok(!block.gyroscope.is_empty()
-            || !block.accelerometer.is_empty()
-            || !block.temperature.is_empty())
+        Ok(!block.is_empty())
     }
 
     fn streams(&self) -> Vec<Stream> {

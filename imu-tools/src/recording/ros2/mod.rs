@@ -8,7 +8,7 @@ mod imu_message;
 mod taken;
 
 pub use imu_message::{DEFINITION, ImuMessage, Template};
-pub use taken::{Recorded, Taken, has_room, holds};
+pub use taken::{Recorded, Taken, holds};
 
 /// Name of the IMU's type.
 pub const IMU: &str = "sensor_msgs/msg/Imu";

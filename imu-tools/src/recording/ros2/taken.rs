@@ -8,9 +8,7 @@ use super::cdr::{Refusal, Stamped};
 use super::{IMU, ImuMessage, TEMPERATURE};
 use crate::recording::input::LARGEST_PIECE;
 use crate::recording::topics::{Holds, Role};
-use crate::recording::{
-    BLOCK_SAMPLES, Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Temperature,
-};
+use crate::recording::{Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Temperature};
 
 /// A message of rosbag2's compression mode "message" begins so: it is a frame of Zstandard.
 const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
@@ -26,14 +24,6 @@ pub fn holds(type_name: &str, encoding: &str) -> Holds {
         )),
         _ => Holds::Other,
     }
-}
-
-/// Whether another message fits.
-#[inline]
-pub fn has_room(block: &Block) -> bool {
-    block.gyroscope.len() < BLOCK_SAMPLES
-        && block.accelerometer.len() < BLOCK_SAMPLES
-        && block.temperature.len() < BLOCK_SAMPLES
 }
 
 /// A message as the recording holds it.

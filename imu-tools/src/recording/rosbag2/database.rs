@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use super::sqlite::{Pages, Rows, columns};
 use crate::error::Error;
 use crate::recording::input::Input;
-use crate::recording::ros2::{Recorded, Taken, has_room, holds};
+use crate::recording::ros2::{Recorded, Taken, holds};
 use crate::recording::topics::{Connection, Topics};
 use crate::recording::{Block, Note, ReadOptions, Source, Stream};
 
@@ -229,15 +229,13 @@ fn tables(pages: &mut Pages) -> Result<(Table, Table), Error> {
 impl Source for DatabaseReader {
     fn next_block(&mut self, block: &mut Block) -> Result<bool, Error> {
         block.clear();
-        while !self.ended && has_room(block) {
+        while !self.ended && block.has_room() {
             if !self.message(block)? {
                 self.ended = true;
                 self.warn();
             }
         }
-        Ok(!block.gyroscope.is_empty()
-            || !block.accelerometer.is_empty()
-            || !block.temperature.is_empty())
+        Ok(!block.is_empty())
     }
 
     fn streams(&self) -> Vec<Stream> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::metadata::{self, Metadata};
 use crate::error::Error;
-use crate::recording::{self, Block, Note, ReadOptions, Source, Stream};
+use crate::recording::{self, Block, Note, ReadOptions, Source, Stream, add_streams};
 
 /// Endings of files that hold messages.
 const ENDINGS: [&str; 4] = [".db3", ".mcap", ".db3.zstd", ".mcap.zstd"];
@@ -73,6 +73,7 @@ impl FolderReader {
         let mut options = options.clone();
         let (gyroscope, accelerometer) =
             (source.gyroscope().to_owned(), source.accelerometer().to_owned());
+        // The other files are asked for what was found here, so that the choice is made once.
         options.topic = match (gyroscope.as_str(), accelerometer.as_str()) {
             ("", "") => options.topic,
             (topic, "") | ("", topic) => Some(topic.to_owned()),
@@ -97,9 +98,8 @@ impl FolderReader {
     /// Goes to the next file; `false` at the end.
     fn next_file(&mut self) -> Result<bool, Error> {
         while let Some(file) = self.files.get(self.current + 1) {
-            // A choice that was told for the first file is not told again.
             self.notes.append(&mut self.source.take_notes());
-            merge_streams(&mut self.streams, self.source.streams());
+            add_streams(&mut self.streams, self.source.streams());
             if let Some(done) = self.files.get(self.current) {
                 self.before += length(done, &self.folder)?;
             }
@@ -119,9 +119,7 @@ impl FolderReader {
         }
         Ok(false)
     }
-}
 
-impl FolderReader {
     /// Compares the number of messages with what the metadata say, once, at the end.
     fn count(&mut self) {
         let found: u64 = self.streams().iter().map(|stream| stream.messages).sum();
@@ -203,20 +201,6 @@ fn length(file: &Path, folder: &Path) -> Result<u64, Error> {
     }
 }
 
-/// Adds the topics of a file to those of the files before.
-fn merge_streams(all: &mut Vec<Stream>, streams: Vec<Stream>) {
-    for stream in streams {
-        let same = |s: &&mut Stream| s.name == stream.name && s.type_name == stream.type_name;
-        match all.iter_mut().find(same) {
-            Some(known) => {
-                known.messages += stream.messages;
-                known.used |= stream.used;
-            }
-            None => all.push(stream),
-        }
-    }
-}
-
 /// A file of which nothing can be read.
 struct Nothing;
 
@@ -272,7 +256,7 @@ impl Source for FolderReader {
 
     fn streams(&self) -> Vec<Stream> {
         let mut streams = self.streams.clone();
-        merge_streams(&mut streams, self.source.streams());
+        add_streams(&mut streams, self.source.streams());
         streams
     }
 

@@ -255,7 +255,7 @@ impl Source for UlogReader {
         }
         scale(&mut block.gyroscope, self.rate);
         scale(&mut block.accelerometer, self.force);
-        Ok(*block != Block::default())
+        Ok(!block.is_empty())
     }
 
     fn streams(&self) -> Vec<Stream> {
