@@ -8,6 +8,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::sensor::Sensor;
 use super::{Block, Note, ReadOptions, Sample, Source, Stream, add_streams, open, timeline};
 use crate::error::Error;
 
@@ -146,13 +147,14 @@ impl Joined {
         (self.source, self.first) = part.begin(&self.options)?;
         self.name = own;
         let sensors = [self.source.gyroscope(), self.source.accelerometer()];
-        for (what, (here, first)) in
-            ["gyroscope", "accelerometer"].iter().zip(sensors.iter().zip(&self.sensors))
+        for (sensor, (here, first)) in
+            Sensor::BOTH.into_iter().zip(sensors.iter().zip(&self.sensors))
         {
             if here != first {
                 self.notes.push(Note::Info(format!(
-                    "{}: the {what} is {here}, where the first file has {first}",
-                    self.name
+                    "{}: the {} is {here}, where the first file has {first}",
+                    self.name,
+                    sensor.name()
                 )));
             }
         }
@@ -333,15 +335,14 @@ fn refuse_copies(parts: &[Part]) -> Result<(), Error> {
 
 /// One ladder has one τ.
 fn refuse_two_rates(parts: &[Part]) -> Result<(), Error> {
-    for (sensor, what) in ["gyroscope", "accelerometer"].iter().enumerate() {
-        let rates = || {
-            parts.iter().filter_map(|part| Some((part, part.rates.get(sensor).copied().flatten()?)))
-        };
+    for (at, sensor) in Sensor::BOTH.into_iter().enumerate() {
+        let rates =
+            || parts.iter().filter_map(|part| Some((part, part.rates.get(at).copied().flatten()?)));
         let Some((one, rate)) = rates().next() else { continue };
         if let Some((other, own)) = rates().find(|(_, own)| (own / rate - 1.0).abs() > SAME_RATE) {
             return Err(Error::data(format!(
-                "the {what} has {rate:.1} samples a second in {} and {own:.1} in {}: take them one by \
-                 one",
+                "the {} has {rate:.1} samples a second in {} and {own:.1} in {}: take them one by one",
+                sensor.name(),
                 name(&one.path),
                 name(&other.path)
             )));

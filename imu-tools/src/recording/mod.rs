@@ -44,6 +44,7 @@ pub mod numpy;
 pub mod poses;
 mod ros2;
 pub mod rosbag2;
+mod sensor;
 pub mod timeline;
 mod topics;
 pub mod ulog;

@@ -2,6 +2,7 @@
 
 use super::names::Name;
 use super::told::Told;
+use crate::recording::sensor::Sensor;
 use crate::recording::{ForceUnit, RateUnit, TimeUnit};
 
 /// The meaning of a column.
@@ -23,15 +24,6 @@ pub enum Column {
     Force(u8),
     /// Temperature.
     Temperature,
-}
-
-/// The sensor that a whole table is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sensor {
-    /// Angular rate.
-    Gyroscope,
-    /// Specific force.
-    Accelerometer,
 }
 
 /// A scale of temperature: degrees Celsius are `factor` times what stands there, plus `zero`.
@@ -183,7 +175,8 @@ impl Columns {
         found.checked()
     }
 
-    /// From the names of a header; axes without a sensor are those of `hint`.
+    /// From the names of a header; axes without a sensor are those of `hint`, where the whole table is
+    /// of one sensor.
     ///
     /// # Errors
     /// What is missing, in words.

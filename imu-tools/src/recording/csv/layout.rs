@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use super::columns::{Celsius, Column, Columns, Sensor};
+use super::columns::{Celsius, Column, Columns};
 use super::dialect::{Dialect, Separator, pointed};
 use super::{date, number, time_unit};
 use crate::error::Error;
+use crate::recording::sensor::Sensor;
 use crate::recording::{ForceUnit, Note, RateUnit, ReadOptions, TimeUnit};
 
 /// How to read the rows of a table.

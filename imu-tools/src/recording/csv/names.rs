@@ -1,6 +1,7 @@
 //! What the name of a column says: which quantity it holds, which axis, in which unit.
 
-use super::columns::{Column, Sensor};
+use super::columns::Column;
+use crate::recording::sensor::Sensor;
 use crate::recording::{ForceUnit, RateUnit, TimeUnit};
 
 /// A column's name in parts.

@@ -9,9 +9,10 @@ mod words;
 
 use std::path::Path;
 
+use super::sensor::Sensor;
 use super::{Note, ReadOptions, Stream};
 use crate::error::Error;
-use words::{Sensor, sensor, twins};
+use words::{sensor, twins};
 
 /// Topics listed in an error, at most.
 const LISTED: usize = 40;

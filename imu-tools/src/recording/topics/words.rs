@@ -5,20 +5,13 @@
 //! whatever is no letter, and where a small letter meets a capital one: `/camera/gyro/sample`,
 //! `/device_0/sensor_2/Accel_0/imu/data`, `/imuGyro`.
 
+use crate::recording::sensor::Sensor;
+
 /// Words for a gyroscope, in small letters.
 const GYROSCOPE: [&str; 4] = ["gyro", "gyros", "gyr", "gyroscope"];
 
 /// Words for an accelerometer, in small letters.
 const ACCELEROMETER: [&str; 5] = ["accel", "accels", "acc", "accelerometer", "acceleration"];
-
-/// The sensor that a topic is named for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sensor {
-    /// Angular rates.
-    Gyroscope,
-    /// Specific forces.
-    Accelerometer,
-}
 
 /// The sensor that `topic` is named for: `None` where it names neither, or both.
 pub fn sensor(topic: &str) -> Option<Sensor> {

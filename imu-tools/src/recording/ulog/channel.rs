@@ -5,6 +5,7 @@
 
 use super::format::{Field, Formats, Scalar};
 use crate::recording::Sample;
+use crate::recording::sensor::Sensor;
 
 /// A source of readings; the rawest comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -165,6 +166,14 @@ impl Layout {
             }
         }
         Ok(layout)
+    }
+
+    /// The channel of a sensor, where it has one.
+    pub fn channel(&self, sensor: Sensor) -> Option<&Channel> {
+        match sensor {
+            Sensor::Gyroscope => self.gyroscope.as_ref(),
+            Sensor::Accelerometer => self.accelerometer.as_ref(),
+        }
     }
 
     /// When the message's readings were taken, in nanoseconds; `None` where that fits no clock.

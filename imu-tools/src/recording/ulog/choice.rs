@@ -3,41 +3,16 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use super::channel::{Channel, Kind, Layout};
+use super::channel::Kind;
 use super::definitions::{Definitions, Subscription};
 use super::messages::{Message, Messages};
 use crate::error::Error;
 use crate::recording::Note;
 use crate::recording::input::{Input, LARGEST_PIECE};
+use crate::recording::sensor::Sensor;
 
 /// Topics listed in an error, at most.
 const LISTED: usize = 40;
-
-/// One of the two sensors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sensor {
-    /// Of angular rate.
-    Gyroscope,
-    /// Of specific force.
-    Accelerometer,
-}
-
-impl Sensor {
-    fn channel(self, layout: &Layout) -> Option<&Channel> {
-        match self {
-            Self::Gyroscope => layout.gyroscope.as_ref(),
-            Self::Accelerometer => layout.accelerometer.as_ref(),
-        }
-    }
-
-    /// In words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Gyroscope => "gyroscope",
-            Self::Accelerometer => "accelerometer",
-        }
-    }
-}
 
 /// A topic's instance that holds readings of a sensor.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,9 +88,9 @@ impl Survey {
     fn add(&mut self, subscription: &Subscription) {
         let Some((kind, layout)) = subscription.readable() else { return };
         let Subscription { topic, instance, .. } = subscription;
-        for sensor in [Sensor::Gyroscope, Sensor::Accelerometer] {
+        for sensor in Sensor::BOTH {
             let side = self.side(sensor);
-            if sensor.channel(layout).is_some()
+            if layout.channel(sensor).is_some()
                 && !side.iter().any(|c| c.topic == *topic && c.instance == *instance)
             {
                 let (topic, instance) = (topic.clone(), *instance);
@@ -127,8 +102,8 @@ impl Survey {
 
     fn count(&mut self, subscription: &Subscription, message: &[u8]) {
         let Some((_, layout)) = subscription.readable() else { return };
-        for sensor in [Sensor::Gyroscope, Sensor::Accelerometer] {
-            let Some(channel) = sensor.channel(layout) else { continue };
+        for sensor in Sensor::BOTH {
+            let Some(channel) = layout.channel(sensor) else { continue };
             let mut side = self.side(sensor).iter_mut();
             if let Some(candidate) =
                 side.find(|c| c.instance == subscription.instance && c.topic == subscription.topic)

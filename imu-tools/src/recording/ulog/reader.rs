@@ -2,11 +2,12 @@
 
 use super::MAGIC;
 use super::channel::{MOST, Taken};
-use super::choice::{Choice, Sensor, Survey};
+use super::choice::{Choice, Survey};
 use super::definitions::{Definitions, Subscription};
 use super::messages::{Message, Messages};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
+use crate::recording::sensor::Sensor;
 use crate::recording::{
     BLOCK_SAMPLES, Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Source, Stream,
     Temperature,
