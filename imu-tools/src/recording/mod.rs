@@ -35,6 +35,7 @@ pub mod csv;
 pub mod euroc;
 mod folder;
 mod format;
+mod imu_body;
 mod input;
 mod inside;
 mod joined;

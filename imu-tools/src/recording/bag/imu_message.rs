@@ -1,9 +1,9 @@
 //! The message `sensor_msgs/Imu` as ROS 1 puts it on the wire.
 //!
-//! seq u32, stamp (seconds u32, nanoseconds u32), frame_id (length u32 and text), orientation
-//! x y z w, its covariance 3×3, angular velocity x y z, covariance, linear acceleration x y z,
-//! covariance: 37 doubles after the header, little-endian. A first covariance element of −1 says
-//! that the quantity is not given.
+//! seq u32, stamp (seconds u32, nanoseconds u32), frame_id (length u32 and text), and the doubles of
+//! [`imu_body`], little-endian.
+
+use crate::recording::imu_body;
 
 /// Name of the type.
 pub const TYPE_NAME: &str = "sensor_msgs/Imu";
@@ -16,15 +16,6 @@ pub const DEFINITION: &str = include_str!("sensor_msgs_Imu.txt");
 
 /// Bytes of the header before the text of its frame.
 const HEADER: usize = 16;
-/// Bytes after the frame: 37 doubles.
-const BODY: usize = 37 * 8;
-/// Offsets in the body.
-const ORIENTATION_W: usize = 24;
-const ORIENTATION_COVARIANCE: usize = 32;
-const RATE: usize = 104;
-const RATE_COVARIANCE: usize = 128;
-const FORCE: usize = 200;
-const FORCE_COVARIANCE: usize = 224;
 
 /// What is wanted of a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,18 +28,6 @@ pub struct ImuMessage {
     pub force: Option<[f64; 3]>,
 }
 
-/// The double at `offset`, the compiler sees that it is there.
-#[inline]
-fn double(body: &[u8; BODY], offset: usize) -> f64 {
-    let bytes = body.get(offset..offset + 8).and_then(|b| b.try_into().ok());
-    f64::from_le_bytes(bytes.unwrap_or([0; 8]))
-}
-
-#[inline]
-fn vector(body: &[u8; BODY], offset: usize) -> [f64; 3] {
-    [double(body, offset), double(body, offset + 8), double(body, offset + 16)]
-}
-
 impl ImuMessage {
     /// Reads a message; `None` when `bytes` are not one.
     #[inline]
@@ -57,15 +36,13 @@ impl ImuMessage {
         let word = |at: usize| header.get(at..at + 4).and_then(|b| b.try_into().ok());
         let (sec, nsec) = (u32::from_le_bytes(word(4)?), u32::from_le_bytes(word(8)?));
         let frame = u32::from_le_bytes(word(12)?) as usize;
-        let body: &[u8; BODY] = rest.get(frame..)?.try_into().ok()?;
-        let given = |value: usize, covariance: usize| {
-            (double(body, covariance) != -1.0).then(|| vector(body, value))
-        };
-        Some(Self {
-            stamp: (sec, nsec),
-            rate: given(RATE, RATE_COVARIANCE),
-            force: given(FORCE, FORCE_COVARIANCE),
-        })
+        let body: &[u8; imu_body::LEN] = rest.get(frame..)?.try_into().ok()?;
+        // The compiler sees that it is there.
+        let (rate, force) = imu_body::read(|at| {
+            let bytes = body.get(at..at + 8).and_then(|b| b.try_into().ok());
+            f64::from_le_bytes(bytes.unwrap_or([0; 8]))
+        });
+        Some(Self { stamp: (sec, nsec), rate, force })
     }
 }
 
@@ -73,7 +50,6 @@ impl ImuMessage {
 #[derive(Clone, Debug)]
 pub struct Template {
     bytes: Vec<u8>,
-    body: usize,
 }
 
 impl Template {
@@ -81,27 +57,8 @@ impl Template {
     pub fn new(frame_id: &str) -> Self {
         let mut bytes = vec![0; HEADER - 4];
         super::record::push_prefixed(&mut bytes, frame_id.as_bytes());
-        let body = bytes.len();
-        bytes.resize(body + BODY, 0);
-        let mut template = Self { bytes, body };
-        template.put(ORIENTATION_W, 1.0);
-        template.put(ORIENTATION_COVARIANCE, -1.0);
-        template
-    }
-
-    fn put(&mut self, offset: usize, value: f64) {
-        let at = self.body + offset;
-        if let Some(bytes) = self.bytes.get_mut(at..at + 8) {
-            bytes.copy_from_slice(&value.to_le_bytes());
-        }
-    }
-
-    fn put_sensor(&mut self, value: Option<[f64; 3]>, at: usize, covariance: usize) {
-        let given = value.is_some();
-        for (axis, v) in value.unwrap_or_default().into_iter().enumerate() {
-            self.put(at + 8 * axis, v);
-        }
-        self.put(covariance, if given { 0.0 } else { -1.0 });
+        imu_body::push(&mut bytes);
+        Self { bytes }
     }
 
     /// The wire form of `message`, as number `seq` of its topic.
@@ -111,8 +68,9 @@ impl Template {
             header[4..8].copy_from_slice(&message.stamp.0.to_le_bytes());
             header[8..].copy_from_slice(&message.stamp.1.to_le_bytes());
         }
-        self.put_sensor(message.rate, RATE, RATE_COVARIANCE);
-        self.put_sensor(message.force, FORCE, FORCE_COVARIANCE);
+        if let Some(body) = self.bytes.last_chunk_mut() {
+            imu_body::write(body, message.rate, message.force);
+        }
         &self.bytes
     }
 }

@@ -81,12 +81,6 @@ impl<const N: usize> Doubles<'_, N> {
         let bytes = self.bytes.get(at..at + 8).and_then(|b| b.try_into().ok()).unwrap_or_default();
         if self.big_endian { f64::from_be_bytes(bytes) } else { f64::from_le_bytes(bytes) }
     }
-
-    /// Three doubles from byte `at`.
-    #[inline]
-    pub fn vector(&self, at: usize) -> [f64; 3] {
-        [self.get(at), self.get(at + 8), self.get(at + 16)]
-    }
 }
 
 #[cfg(test)]

@@ -1,22 +1,10 @@
-//! The message `sensor_msgs/msg/Imu`: a header and 37 doubles.
-//!
-//! Orientation x y z w, its covariance 3×3, angular velocity x y z, covariance, linear acceleration
-//! x y z, covariance. A first covariance element of −1 says that the quantity is not given.
+//! The message `sensor_msgs/msg/Imu`: a header and the doubles of [`imu_body`].
 
 use super::cdr::{ENCAPSULATION, Refusal, Stamped};
+use crate::recording::imu_body;
 
 /// Text of the definition with all that it includes.
 pub const DEFINITION: &str = include_str!("sensor_msgs_msg_Imu.txt");
-
-/// Bytes of 37 doubles.
-const BODY: usize = 37 * 8;
-/// Offsets in the body.
-const ORIENTATION_W: usize = 24;
-const ORIENTATION_COVARIANCE: usize = 32;
-const RATE: usize = 104;
-const RATE_COVARIANCE: usize = 128;
-const FORCE: usize = 200;
-const FORCE_COVARIANCE: usize = 224;
 
 /// What is wanted of a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,15 +22,9 @@ impl ImuMessage {
     #[inline]
     pub fn parse(bytes: &[u8]) -> Result<Self, Refusal> {
         let stamped = Stamped::parse(bytes)?;
-        let body = stamped.doubles::<BODY>()?;
-        let given = |value: usize, covariance: usize| {
-            (body.get(covariance) != -1.0).then(|| body.vector(value))
-        };
-        Ok(Self {
-            stamp_ns: stamped.stamp_ns,
-            rate: given(RATE, RATE_COVARIANCE),
-            force: given(FORCE, FORCE_COVARIANCE),
-        })
+        let body = stamped.doubles::<{ imu_body::LEN }>()?;
+        let (rate, force) = imu_body::read(|at| body.get(at));
+        Ok(Self { stamp_ns: stamped.stamp_ns, rate, force })
     }
 }
 
@@ -50,7 +32,6 @@ impl ImuMessage {
 #[derive(Clone, Debug)]
 pub struct Template {
     bytes: Vec<u8>,
-    body: usize,
 }
 
 impl Template {
@@ -62,26 +43,9 @@ impl Template {
         bytes.extend_from_slice(frame_id.as_bytes());
         bytes.push(0);
         let body = (bytes.len() - ENCAPSULATION).next_multiple_of(8) + ENCAPSULATION;
-        bytes.resize(body + BODY, 0);
-        let mut template = Self { bytes, body };
-        template.put(ORIENTATION_W, 1.0);
-        template.put(ORIENTATION_COVARIANCE, -1.0);
-        template
-    }
-
-    fn put(&mut self, offset: usize, value: f64) {
-        let at = self.body + offset;
-        if let Some(bytes) = self.bytes.get_mut(at..at + 8) {
-            bytes.copy_from_slice(&value.to_le_bytes());
-        }
-    }
-
-    fn put_sensor(&mut self, value: Option<[f64; 3]>, at: usize, covariance: usize) {
-        let given = value.is_some();
-        for (axis, v) in value.unwrap_or_default().into_iter().enumerate() {
-            self.put(at + 8 * axis, v);
-        }
-        self.put(covariance, if given { 0.0 } else { -1.0 });
+        bytes.resize(body, 0);
+        imu_body::push(&mut bytes);
+        Self { bytes }
     }
 
     /// The wire form of a message with this stamp: seconds and nanoseconds.
@@ -95,8 +59,9 @@ impl Template {
             start[4..8].copy_from_slice(&sec.to_le_bytes());
             start[8..].copy_from_slice(&nanosec.to_le_bytes());
         }
-        self.put_sensor(rate, RATE, RATE_COVARIANCE);
-        self.put_sensor(force, FORCE, FORCE_COVARIANCE);
+        if let Some(body) = self.bytes.last_chunk_mut() {
+            imu_body::write(body, rate, force);
+        }
         &self.bytes
     }
 }
