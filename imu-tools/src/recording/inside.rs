@@ -11,6 +11,7 @@ use lz4_flex::frame::FrameDecoder as Lz4;
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder as Zstd};
 
 use super::input::Input;
+use super::zstandard;
 use crate::error::Error;
 
 /// What a decoder must remember at most: as much as Zstandard's ordinary levels ask for, 8 MB, and
@@ -117,21 +118,12 @@ impl Inside {
                     if let Some(refused) = self.part().refused.take() {
                         return Err(refused);
                     }
-                    self.end_early();
+                    if let Decoder::Zstd { frame, ended, .. } = &mut self.decoder {
+                        *ended = true;
+                        zstandard::end_early(frame);
+                    }
                 }
             }
-        }
-    }
-
-    /// Brings a decoder of Zstandard to give what it still keeps back for later blocks: an empty
-    /// last block tells it that there are none.
-    fn end_early(&mut self) {
-        /// A block header (last, raw, no bytes) and a checksum that nobody looks at.
-        const LAST: [u8; 7] = [1, 0, 0, 0, 0, 0, 0];
-        if let Decoder::Zstd { frame, ended, .. } = &mut self.decoder {
-            *ended = true;
-            // Before its first block a decoder keeps nothing, and refuses this.
-            let _ = frame.decode_blocks(&LAST[..], BlockDecodingStrategy::UptoBlocks(1));
         }
     }
 

@@ -51,6 +51,7 @@ mod topics;
 pub mod ulog;
 mod units;
 mod unpack;
+mod zstandard;
 
 use std::io::Read;
 use std::path::Path;

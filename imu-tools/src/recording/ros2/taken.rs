@@ -8,10 +8,9 @@ use super::cdr::{Refusal, Stamped};
 use super::{IMU, ImuMessage, TEMPERATURE};
 use crate::recording::input::LARGEST_PIECE;
 use crate::recording::topics::{Holds, Role};
-use crate::recording::{Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Temperature};
-
-/// A message of rosbag2's compression mode "message" begins so: it is a frame of Zstandard.
-const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+use crate::recording::{
+    Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Temperature, zstandard,
+};
 
 /// What the messages of a type are to us, by its name and that of their wire form.
 pub fn holds(type_name: &str, encoding: &str) -> Holds {
@@ -76,7 +75,8 @@ impl Taken {
     /// Takes one message.
     #[inline]
     pub fn message(&mut self, message: Recorded<'_>, role: Role, to: &mut Block) {
-        if message.payload.starts_with(&ZSTD) {
+        // As in rosbag2's compression mode "message".
+        if message.payload.starts_with(&zstandard::MAGIC) {
             return self.packed(message, role, to);
         }
         self.plain(message, role, to);

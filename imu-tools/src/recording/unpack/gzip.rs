@@ -2,7 +2,7 @@
 
 use flate2::{Decompress, FlushDecompress, Status};
 
-use super::{Stop, Unpack};
+use super::{Stop, Unpack, cut_off, damaged_near};
 use crate::recording::input::Input;
 
 /// Logarithm of the largest window that deflate has.
@@ -52,10 +52,7 @@ impl Gzip {
     }
 
     fn stop(&self, why: &str) -> Stop {
-        let (path, at) = (self.input.path().display(), self.input.offset());
-        Stop::Damage(format!(
-            "{path} is damaged near byte {at} of its compressed data ({why}): what follows is lost"
-        ))
+        Stop::Damage(damaged_near(&self.input, self.input.offset(), &why))
     }
 }
 
@@ -98,14 +95,4 @@ impl Unpack for Gzip {
     fn input(&self) -> &Input {
         &self.input
     }
-}
-
-/// The sentence for a file that ends too early.
-pub fn cut_off(input: &Input) -> String {
-    format!(
-        "{} is cut off: its compressed data end after {} bytes in the middle of a piece, and what \
-         followed is lost",
-        input.path().display(),
-        input.offset()
-    )
 }

@@ -9,12 +9,13 @@ mod gzip;
 mod utf16;
 mod zstd;
 
+use std::fmt::Display;
 use std::io::{self, Read};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::input::Input;
-use super::{Block, Note, Source, Stream};
+use super::{Block, Note, Source, Stream, zstandard};
 use crate::error::Error;
 
 /// So many wrappings in each other are enough for anything but an attack.
@@ -41,6 +42,24 @@ trait Unpack: Send {
 
     /// The bytes that are unpacked.
     fn input(&self) -> &Input;
+}
+
+/// The sentence for a file that ends too early.
+fn cut_off(input: &Input) -> String {
+    format!(
+        "{} is cut off: its compressed data end after {} bytes in the middle of a piece, and what \
+         followed is lost",
+        input.path().display(),
+        input.offset()
+    )
+}
+
+/// The sentence for a file that cannot be decompressed from about byte `at` on, and why.
+fn damaged_near(input: &Input, at: u64, why: &dyn Display) -> String {
+    format!(
+        "{} is damaged near byte {at} of its compressed data ({why}): what follows is lost",
+        input.path().display()
+    )
 }
 
 /// One wrapping, shared by the [`Input`] that reads from it and the [`Unpacked`] that watches it.
@@ -113,9 +132,9 @@ pub fn unpack(mut input: Input) -> Result<(Input, Layers), Error> {
         let path = input.path().to_owned();
         let layer = match input.at_hand() {
             [0x1f, 0x8b, ..] => Layer::new(gzip::Gzip::new(input)),
-            [0x28, 0xb5, 0x2f, 0xfd, ..] | [0x50..=0x5f, 0x2a, 0x4d, 0x18, ..] => {
-                Layer::new(zstd::Zstd::new(input))
-            }
+            // A frame, or one to be passed over.
+            start if start.starts_with(&zstandard::MAGIC) => Layer::new(zstd::Zstd::new(input)),
+            [0x50..=0x5f, 0x2a, 0x4d, 0x18, ..] => Layer::new(zstd::Zstd::new(input)),
             [0xff, 0xfe, ..] => Layer::new(utf16::Utf16::new(input, u16::from_le_bytes)),
             [0xfe, 0xff, ..] => Layer::new(utf16::Utf16::new(input, u16::from_be_bytes)),
             _ => return Ok((input, layers)),

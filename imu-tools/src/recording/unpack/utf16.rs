@@ -1,7 +1,6 @@
 //! UTF-16 with a byte order mark, as spreadsheets save "Unicode text", into UTF-8.
 
-use super::gzip::cut_off;
-use super::{Stop, Unpack};
+use super::{Stop, Unpack, cut_off};
 use crate::recording::input::Input;
 
 /// Text being turned into UTF-8, without its byte order mark.

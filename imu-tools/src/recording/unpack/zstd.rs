@@ -5,16 +5,13 @@ use std::io::{self, Read};
 use ruzstd::decoding::errors::{FrameDecoderError, ReadFrameHeaderError};
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 
-use super::gzip::cut_off;
-use super::{Stop, Unpack};
+use super::{Stop, Unpack, cut_off, damaged_near};
 use crate::error::Error;
 use crate::recording::input::Input;
+use crate::recording::zstandard;
 
 /// Blocks are decoded until there is so much to hand on.
 const AT_ONCE: usize = 128 * 1024;
-
-/// The header of a raw block without content, the last of its frame, and room for a checksum.
-const LAST_BLOCK: [u8; 7] = [1, 0, 0, 0, 0, 0, 0];
 
 /// A Zstandard file being unpacked.
 pub struct Zstd {
@@ -78,7 +75,7 @@ impl Zstd {
                     }
                 }
                 Err(_) if ended => return Err(Stop::Damage(cut_off(&self.input))),
-                Err(error) => return Err(Stop::Damage(damaged(&self.input, at, &error))),
+                Err(error) => return Err(Stop::Damage(damaged_near(&self.input, at, &error))),
             }
         }
         Ok(false)
@@ -95,20 +92,13 @@ impl Zstd {
             return Err(error.into());
         }
         if let Err(error) = decoded {
-            let what = if ended { cut_off(&self.input) } else { damaged(&self.input, at, &error) };
-            // The decoder keeps back a window of what is already right; a last block frees it.
-            let _ = self.decoder.decode_blocks(&LAST_BLOCK[..], BlockDecodingStrategy::All);
+            let what =
+                if ended { cut_off(&self.input) } else { damaged_near(&self.input, at, &error) };
+            zstandard::end_early(&mut self.decoder);
             self.broken = Some(what);
         }
         Ok(())
     }
-}
-
-fn damaged(input: &Input, at: u64, error: &FrameDecoderError) -> String {
-    format!(
-        "{} is damaged near byte {at} of its compressed data ({error}): what follows is lost",
-        input.path().display()
-    )
 }
 
 impl Unpack for Zstd {
