@@ -1,119 +1,16 @@
 //! Which topics the samples are taken from: what was asked for, or what suits best.
 
-use std::io::Cursor;
 use std::path::Path;
 
 use super::channel::Kind;
 use super::definitions::{Definitions, Subscription};
-use super::messages::{Message, Messages};
+use super::survey::{Candidate, Survey};
 use crate::error::Error;
 use crate::recording::Note;
-use crate::recording::input::{Input, LARGEST_PIECE};
 use crate::recording::sensor::Sensor;
 
 /// Topics listed in an error, at most.
 const LISTED: usize = 40;
-
-/// A topic's instance that holds readings of a sensor.
-#[derive(Clone, Debug, PartialEq)]
-struct Candidate {
-    topic: String,
-    instance: u8,
-    kind: Kind,
-    /// Seen in the stretch that was looked at.
-    readings: u64,
-    /// Number of its chip, as far as it was seen.
-    device: Option<f64>,
-}
-
-impl Candidate {
-    fn label(&self) -> String {
-        format!("{}:{}", self.topic, self.instance)
-    }
-}
-
-/// What a stretch of a log holds of each sensor.
-#[derive(Clone, Debug, Default)]
-pub struct Survey {
-    gyroscope: Vec<Candidate>,
-    accelerometer: Vec<Candidate>,
-}
-
-impl Survey {
-    /// Looks at the bytes that come next, a megabyte at most, without taking them.
-    ///
-    /// # Errors
-    /// When the file cannot be read, or must not be.
-    pub fn ahead(messages: &mut Messages) -> Result<Self, Error> {
-        let input = messages.input_mut();
-        input.fill(LARGEST_PIECE)?;
-        let bytes = input.at_hand().to_vec();
-        let copy = Input::pipe(input.path(), Box::new(Cursor::new(bytes)));
-        let mut copy = Messages::new(copy, messages.definitions.clone());
-        let mut survey = Self::of(copy.definitions.subscriptions());
-        while let Some(message) = copy.next()? {
-            match message {
-                Message::Data(place) => {
-                    if let Some(subscription) = copy.definitions.at(place) {
-                        survey.count(subscription, copy.data());
-                    }
-                }
-                Message::Subscribed(place) => {
-                    if let Some(subscription) = copy.definitions.at(place) {
-                        survey.add(subscription);
-                    }
-                }
-                Message::Other => {}
-            }
-        }
-        Ok(survey)
-    }
-
-    /// Of topics whose data was not looked at.
-    pub fn of(subscriptions: &[Subscription]) -> Self {
-        let mut survey = Self::default();
-        for subscription in subscriptions {
-            survey.add(subscription);
-        }
-        survey
-    }
-
-    fn side(&mut self, sensor: Sensor) -> &mut Vec<Candidate> {
-        match sensor {
-            Sensor::Gyroscope => &mut self.gyroscope,
-            Sensor::Accelerometer => &mut self.accelerometer,
-        }
-    }
-
-    fn add(&mut self, subscription: &Subscription) {
-        let Some((kind, layout)) = subscription.readable() else { return };
-        let Subscription { topic, instance, .. } = subscription;
-        for sensor in Sensor::BOTH {
-            let side = self.side(sensor);
-            if layout.channel(sensor).is_some()
-                && !side.iter().any(|c| c.topic == *topic && c.instance == *instance)
-            {
-                let (topic, instance) = (topic.clone(), *instance);
-                side.push(Candidate { topic, instance, kind, readings: 0, device: None });
-                side.sort_by_key(|c| (c.kind, c.instance));
-            }
-        }
-    }
-
-    fn count(&mut self, subscription: &Subscription, message: &[u8]) {
-        let Some((_, layout)) = subscription.readable() else { return };
-        for sensor in Sensor::BOTH {
-            let Some(channel) = layout.channel(sensor) else { continue };
-            let mut side = self.side(sensor).iter_mut();
-            if let Some(candidate) =
-                side.find(|c| c.instance == subscription.instance && c.topic == subscription.topic)
-            {
-                candidate.readings += channel.count(message);
-                candidate.device = candidate.device.or_else(|| channel.device(message));
-            }
-        }
-    }
-}
 
 /// A topic, an instance or both.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -42,6 +42,7 @@ mod format;
 mod messages;
 mod reader;
 mod remarks;
+mod survey;
 
 pub use reader::UlogReader;
 

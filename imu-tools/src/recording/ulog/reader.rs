@@ -2,9 +2,10 @@
 
 use super::MAGIC;
 use super::channel::{MOST, Taken};
-use super::choice::{Choice, Survey};
+use super::choice::Choice;
 use super::definitions::{Definitions, Subscription};
 use super::messages::{Message, Messages};
+use super::survey::Survey;
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
 use crate::recording::sensor::Sensor;
