@@ -6,30 +6,18 @@
 //! after, is a record of its own ([`Source::record_number`]): another sensor or another day, whose bias
 //! says nothing of the other's.
 
-use std::path::{Path, PathBuf};
+mod part;
+mod refusal;
+
+use std::path::PathBuf;
 
 use super::sensor::Sensor;
-use super::{Block, Note, ReadOptions, Sample, Source, Stream, add_streams, open, timeline};
+use super::{Block, Note, ReadOptions, Source, Stream, add_streams};
 use crate::error::Error;
+use part::Part;
 
-/// Whoever leaves a sensor for longer has switched it off: the limit of a [`timeline`], in ns.
+/// Whoever leaves a sensor for longer has switched it off: the limit of a [`timeline`](super::timeline), in ns.
 const LONGEST_GAP: i64 = 3_600_000_000_000;
-
-/// Rates of two files that differ by a larger part are those of two settings.
-const SAME_RATE: f64 = 0.01;
-
-/// One of the files, of which the first block was read.
-struct Part {
-    path: PathBuf,
-    /// First samples of gyroscope and accelerometer, and rates where they show them.
-    first: [Option<Sample>; 2],
-    rates: [Option<f64>; 2],
-    /// Length of the mean specific force, m/s².
-    force: Option<f64>,
-    bytes: Option<u64>,
-    /// What cannot be opened again (a pipe) stays open, with its first block.
-    held: Option<(Box<dyn Source>, Block)>,
-}
 
 /// Several files being read as one recording.
 pub struct Joined {
@@ -58,10 +46,10 @@ impl Joined {
     /// Looks into each of the files, and starts to read the earliest.
     ///
     /// # Errors
-    /// As [`open`] for each of them; when one is named twice, when their rates differ, or when none
+    /// As [`open`](super::open) for each of them; when one is named twice, when their rates differ, or when none
     /// holds a sample.
     pub fn open(paths: &[PathBuf], options: &ReadOptions) -> Result<Self, Error> {
-        refuse_twice(paths)?;
+        refusal::twice(paths)?;
         let mut notes = Vec::new();
         let mut parts: Vec<Part> = Vec::new();
         for path in paths {
@@ -69,21 +57,21 @@ impl Joined {
                 Some(part) => parts.push(part),
                 None => notes.push(Note::Warning(format!(
                     "{} holds no samples and is left out",
-                    name(path)
+                    part::name(path)
                 ))),
             }
         }
-        refuse_two_rates(&parts)?;
-        refuse_two_units(&parts)?;
+        refusal::two_rates(&parts)?;
+        refusal::two_units(&parts)?;
         parts.sort_by_key(Part::start);
-        refuse_copies(&parts)?;
-        let names = parts.iter().map(|part| name(&part.path)).collect();
+        refusal::copies(&parts)?;
+        let names = parts.iter().map(Part::name).collect();
         let total = parts.iter().map(|part| part.bytes).sum();
         parts.reverse();
         let Some(part) = parts.pop() else {
             return Err(Error::data("none of these files holds a sample of an IMU"));
         };
-        let own = name(&part.path);
+        let own = part.name();
         let (source, first) = part.begin(options)?;
         let sensors = [source.gyroscope().to_owned(), source.accelerometer().to_owned()];
         Ok(Self {
@@ -113,7 +101,7 @@ impl Joined {
     fn advance(&mut self) -> Result<bool, Error> {
         let Some(part) = self.parts.pop() else { return Ok(false) };
         self.close_file();
-        let own = name(&part.path);
+        let own = part.name();
         let starts = part.first.map(|first| first.map(|sample| sample.stamp_ns));
         let note = match gap(self.last, starts) {
             Some(gap) if gap < 0 => {
@@ -244,52 +232,6 @@ impl Source for Joined {
     }
 }
 
-impl Part {
-    /// Looks into a file; `None` where it holds no sample.
-    fn open(path: &Path, options: &ReadOptions) -> Result<Option<Self>, Error> {
-        let mut source = open(path, options)?;
-        let mut block = Block::default();
-        loop {
-            if !source.next_block(&mut block)? {
-                return Ok(None);
-            }
-            if !block.gyroscope.is_empty() || !block.accelerometer.is_empty() {
-                break;
-            }
-        }
-        let lists = [&block.gyroscope, &block.accelerometer];
-        let (first, rates) =
-            (lists.map(|list| list.first().copied()), lists.map(|list| timeline::rate(list)));
-        let force = mean_length(&block.accelerometer);
-        let bytes = source.bytes_total();
-        let again = path != Path::new("-") && (path.is_file() || path.is_dir());
-        let held = if again { None } else { Some((source, block)) };
-        Ok(Some(Self { path: path.to_owned(), first, rates, force, bytes, held }))
-    }
-
-    /// The first stamp of either sensor.
-    fn start(&self) -> i64 {
-        let stamps = self.first.iter().flatten().map(|sample| sample.stamp_ns);
-        stamps.min().unwrap_or(i64::MAX)
-    }
-
-    /// The file from its beginning, and its first block if that was read already.
-    fn begin(self, options: &ReadOptions) -> Result<(Box<dyn Source>, Option<Block>), Error> {
-        match self.held {
-            Some((source, block)) => Ok((source, Some(block))),
-            None => Ok((open(&self.path, options)?, None)),
-        }
-    }
-}
-
-/// A file as messages call it.
-fn name(path: &Path) -> String {
-    match path.to_str() {
-        Some("-") => "standard input".into(),
-        _ => path.display().to_string(),
-    }
-}
-
 /// Nanoseconds from the end of one file to the start of the next, by the sensor that has fewer;
 /// `None` where no sensor is in both.
 fn gap(last: [Option<i64>; 2], first: [Option<i64>; 2]) -> Option<i64> {
@@ -297,96 +239,12 @@ fn gap(last: [Option<i64>; 2], first: [Option<i64>; 2]) -> Option<i64> {
     gaps.filter_map(|(last, first)| Some(first?.saturating_sub((*last)?))).min()
 }
 
-/// The same file twice would count twice.
-fn refuse_twice(paths: &[PathBuf]) -> Result<(), Error> {
-    let mut seen = Vec::new();
-    for path in paths {
-        let target = path.canonicalize().unwrap_or_else(|_| path.clone());
-        if seen.contains(&target) {
-            return Err(Error::usage(format!(
-                "{} is named twice: its samples would count twice",
-                name(path)
-            )));
-        }
-        seen.push(target);
-    }
-    Ok(())
-}
-
-/// So would a copy: the same first samples, to the bit. `parts` are in order of their first stamps.
-fn refuse_copies(parts: &[Part]) -> Result<(), Error> {
-    let bits = |part: &Part| {
-        part.first.map(|first| first.map(|s| (s.stamp_ns, s.value.map(f64::to_bits))))
-    };
-    for pair in parts.windows(2) {
-        if let [one, other] = pair
-            && bits(one) == bits(other)
-        {
-            return Err(Error::data(format!(
-                "{} and {} begin with the same samples: one is a copy of the other, or a part, and \
-                 would count twice",
-                name(&one.path),
-                name(&other.path)
-            )));
-        }
-    }
-    Ok(())
-}
-
-/// One ladder has one τ.
-fn refuse_two_rates(parts: &[Part]) -> Result<(), Error> {
-    for (at, sensor) in Sensor::BOTH.into_iter().enumerate() {
-        let rates =
-            || parts.iter().filter_map(|part| Some((part, part.rates.get(at).copied().flatten()?)));
-        let Some((one, rate)) = rates().next() else { continue };
-        if let Some((other, own)) = rates().find(|(_, own)| (own / rate - 1.0).abs() > SAME_RATE) {
-            return Err(Error::data(format!(
-                "the {} has {rate:.1} samples a second in {} and {own:.1} in {}: take them one by one",
-                sensor.name(),
-                name(&one.path),
-                name(&other.path)
-            )));
-        }
-    }
-    Ok(())
-}
-
-/// Gravity that differs by a large factor is gravity in two units.
-fn refuse_two_units(parts: &[Part]) -> Result<(), Error> {
-    /// Neither motion nor a bias makes so much of the mean; g and m/s² are 9.8 apart.
-    const FACTOR: f64 = 5.0;
-    /// Less than this, in whatever unit, is no gravity.
-    const LEAST: f64 = 0.5;
-    let mut forces =
-        parts.iter().filter_map(|part| Some((part, part.force.filter(|f| *f > LEAST)?)));
-    let Some((one, force)) = forces.next() else { return Ok(()) };
-    match forces.find(|(_, own)| own / force > FACTOR || force / own > FACTOR) {
-        None => Ok(()),
-        Some((other, own)) => Err(Error::data(format!(
-            "the accelerometer reads {force:.3} m/s² on average in {} and {own:.3} in {}: one of \
-             them is in another unit; convert it first with --accel-unit",
-            name(&one.path),
-            name(&other.path)
-        ))),
-    }
-}
-
-/// Length of the mean of a sensor's finite samples; `None` without any.
-fn mean_length(samples: &[Sample]) -> Option<f64> {
-    let (mut sum, mut count) = ([0.0; 3], 0.0);
-    for sample in samples.iter().filter(|s| s.value.iter().all(|x| x.is_finite())) {
-        for (sum, x) in sum.iter_mut().zip(sample.value) {
-            *sum += x;
-        }
-        count += 1.0;
-    }
-    (count > 0.0).then(|| sum.iter().map(|x| x * x).sum::<f64>().sqrt() / count)
-}
-
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
-    use crate::recording::{BLOCK_SAMPLES, create};
+    use crate::recording::{BLOCK_SAMPLES, Sample, create};
 
     const STEP: i64 = 10_000_000;
 
