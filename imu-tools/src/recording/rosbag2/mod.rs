@@ -12,7 +12,6 @@ mod database;
 mod folder;
 mod metadata;
 mod sqlite;
-mod wal;
 
 pub use database::DatabaseReader;
 pub use folder::{FolderReader, is_rosbag2};

@@ -1,26 +1,8 @@
-//! Reading the tables of an SQLite file: pages, B-trees and records, nothing of SQL.
-//!
-//! A file is pages of one size; the first 100 bytes say which. A table is a tree of pages: inner
-//! ones (kind 5) hold numbers of pages, leaves (kind 13) hold rows. A row is a header of types and
-//! the values; what does not fit its page goes on in a chain of overflow pages. Table
-//! `sqlite_schema`, in page 1, names the first page of every other one. What was committed but not
-//! yet moved into the file stands in the write-ahead log ([`wal`](super::wal)). Source: "Database
-//! File Format", <https://www.sqlite.org/fileformat2.html>.
-//!
-//! A page that is not what it should be costs its rows, and is counted. Memory: a page and the
-//! numbers in the inner pages above it.
+//! The rows of a table, and the values in them.
 
-use std::path::Path;
-
-use super::wal::Wal;
+use super::pages::Pages;
+use super::{HEADER, half, word};
 use crate::error::Error;
-use crate::recording::input::Input;
-
-/// The first bytes of every file.
-pub const MAGIC: &[u8] = b"SQLite format 3\0";
-
-/// Bytes of the file's header, in front of the first page's own.
-const HEADER: usize = 100;
 
 /// Page of the table of tables.
 const SCHEMA: u32 = 1;
@@ -37,120 +19,6 @@ const LONGEST: usize = 64 * 1024;
 
 /// Values of a row that are looked at, at most.
 const COLUMNS: usize = 64;
-
-/// The pages of a database.
-pub struct Pages {
-    input: Input,
-    wal: Option<Wal>,
-    size: usize,
-    /// Bytes of a page that hold data.
-    usable: usize,
-    /// Pages that the file and its log can have at most.
-    count: u64,
-    /// Pages read so far.
-    pub read: u64,
-    /// Pages that are missing or are not what they should be.
-    pub lost: u64,
-    /// Pages that the file should have, if it has fewer.
-    pub cut_off: Option<u64>,
-}
-
-fn word(bytes: &[u8], at: usize) -> Option<u32> {
-    Some(u32::from_be_bytes(*bytes.get(at..)?.first_chunk()?))
-}
-
-fn half(bytes: &[u8], at: usize) -> Option<usize> {
-    Some(usize::from(u16::from_be_bytes(*bytes.get(at..)?.first_chunk()?)))
-}
-
-/// A number of one to nine bytes, seven bits each, and what follows it.
-fn varint(bytes: &[u8]) -> Option<(u64, &[u8])> {
-    let mut value = 0_u64;
-    for (at, &byte) in bytes.iter().enumerate().take(9) {
-        if at == 8 {
-            return Some((value << 8 | u64::from(byte), bytes.get(9..)?));
-        }
-        value = value << 7 | u64::from(byte & 0x7f);
-        if byte < 0x80 {
-            return Some((value, bytes.get(at + 1..)?));
-        }
-    }
-    None
-}
-
-impl Pages {
-    /// Reads the header of a file that can be sought in.
-    ///
-    /// # Errors
-    /// When it is no SQLite file, or one whose texts are UTF-16.
-    pub fn open(mut input: Input, wal: Option<Input>) -> Result<Self, Error> {
-        let name = input.path().display().to_string();
-        let whole = input.fill(HEADER)?;
-        let header = input.at_hand();
-        if !whole || !header.starts_with(MAGIC) {
-            return Err(Error::data(format!(
-                "{name} is no SQLite file, or is cut off at its start"
-            )));
-        }
-        let size = match half(header, 16) {
-            Some(1) => 65_536,
-            size => size.unwrap_or(0),
-        };
-        let usable = size.saturating_sub(usize::from(header.get(20).copied().unwrap_or(0)));
-        if !size.is_power_of_two() || size < 512 || usable < 480 {
-            return Err(Error::data(format!(
-                "{name} is damaged: its header says that its pages are {size} bytes long"
-            )));
-        }
-        if word(header, 56).is_some_and(|encoding| encoding > 1) {
-            return Err(Error::data(format!(
-                "{name} holds texts in UTF-16, and is no recording of rosbag2"
-            )));
-        }
-        let len = input.len().unwrap_or(0);
-        // The count holds if the last writer knew of it.
-        let known = word(header, 24) == word(header, 92);
-        let told = word(header, 28).filter(|_| known).map(u64::from);
-        let wal = wal.map(|log| Wal::open(log, size)).transpose()?.flatten();
-        let cut_off = told.filter(|told| *told > len / size as u64 && wal.is_none());
-        let count = len.div_ceil(size as u64).max(wal.as_ref().map_or(0, Wal::highest_page));
-        Ok(Self { input, wal, size, usable, count, read: 0, lost: 0, cut_off })
-    }
-
-    /// The name that errors call the file by.
-    pub fn path(&self) -> &Path {
-        self.input.path()
-    }
-
-    /// Length of the file.
-    pub fn len(&self) -> Option<u64> {
-        self.input.len()
-    }
-
-    /// Length of a page.
-    pub fn size(&self) -> usize {
-        self.size
-    }
-
-    /// Page `number`, the first is 1; `None` where the file does not have it.
-    fn page(&mut self, number: u32) -> Result<Option<&[u8]>, Error> {
-        let Some(before) = number.checked_sub(1) else { return Ok(None) };
-        self.read += 1;
-        let (input, offset) = match self.wal.as_mut().and_then(|wal| wal.page(number)) {
-            Some(there) => there,
-            None => (&mut self.input, u64::from(before) * self.size as u64),
-        };
-        // Pages of a recording follow each other, so the next one is at hand most of the time.
-        let ahead = offset.checked_sub(input.offset()).and_then(|n| usize::try_from(n).ok());
-        match ahead.filter(|n| *n <= input.at_hand().len()) {
-            Some(n) => input.consume(n),
-            None if input.seek(offset)? => {}
-            None => return Ok(None),
-        }
-        input.fill(self.size)?;
-        Ok(input.at_hand().get(..self.size))
-    }
-}
 
 /// Where a value of a row is, and what it is.
 #[derive(Clone, Copy, Debug)]
@@ -174,7 +42,7 @@ pub struct Rows {
     /// Pages of the tree so far: in circles there would be no end.
     visited: u64,
     /// Number of the row at hand.
-    pub number: i64,
+    number: i64,
     /// Where in the leaf it starts, how much of it is there, and how long it is.
     start: usize,
     local: usize,
@@ -374,24 +242,19 @@ impl Rows {
     }
 }
 
-/// The names of a table's columns, from the command that made it.
-pub fn columns(sql: &str) -> Vec<String> {
-    let inside = sql.split_once('(').map_or("", |(_, rest)| rest);
-    let inside = inside.rsplit_once(')').map_or(inside, |(inside, _)| inside);
-    let mut depth = 0_usize;
-    let parts = inside.split(|c| {
-        match c {
-            '(' => depth += 1,
-            ')' => depth = depth.saturating_sub(1),
-            _ => {}
+/// A number of one to nine bytes, seven bits each, and what follows it.
+fn varint(bytes: &[u8]) -> Option<(u64, &[u8])> {
+    let mut value = 0_u64;
+    for (at, &byte) in bytes.iter().enumerate().take(9) {
+        if at == 8 {
+            return Some((value << 8 | u64::from(byte), bytes.get(9..)?));
         }
-        c == ',' && depth == 0
-    });
-    let quote = |c: char| "\"'`[]".contains(c);
-    parts
-        .filter_map(|part| part.split_whitespace().next())
-        .map(|name| name.trim_matches(quote).to_lowercase())
-        .collect()
+        value = value << 7 | u64::from(byte & 0x7f);
+        if byte < 0x80 {
+            return Some((value, bytes.get(at + 1..)?));
+        }
+    }
+    None
 }
 
 #[cfg(test)]
@@ -406,14 +269,5 @@ mod tests {
             assert_eq!(varint(bytes), Some((value, &[][..])));
             assert_eq!(varint(&bytes[..bytes.len() - 1]), None);
         }
-    }
-
-    #[test]
-    fn columns_are_named_in_order() {
-        let sql = "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER NOT NULL,\
-                   \"timestamp\" INTEGER DEFAULT (max(1, 2)), data BLOB NOT NULL)";
-        assert_eq!(columns(sql), ["id", "topic_id", "timestamp", "data"]);
-        assert_eq!(columns("CREATE"), Vec::<String>::new());
-        assert_eq!(columns(")("), Vec::<String>::new());
     }
 }

@@ -7,6 +7,7 @@
 
 use std::collections::HashMap;
 
+use super::word;
 use crate::error::Error;
 use crate::recording::input::Input;
 
@@ -45,10 +46,6 @@ impl Sums {
         }
         self.values = [a, b];
     }
-}
-
-fn word(bytes: &[u8], at: usize) -> Option<u32> {
-    Some(u32::from_be_bytes(*bytes.get(at..)?.first_chunk()?))
 }
 
 impl Wal {
