@@ -5,22 +5,19 @@
 //! record is passed over unread (an image of a megabyte) is not checked, and neither are the
 //! checksums of data section and summary.
 
+mod described;
+mod lost;
+
 use super::chunk::Chunk;
 use super::record::{self, ChunkHead, Fields, HEAD, MESSAGE};
-use super::repeat::{Repeat, find_chunk};
+use super::repeat::Repeat;
 use super::{MAGIC, op};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
 use crate::recording::inside::Compression;
-use crate::recording::ros2::{Recorded, Taken, holds};
-use crate::recording::topics::{Connection, Topics};
+use crate::recording::ros2::{Recorded, Taken};
+use crate::recording::topics::Topics;
 use crate::recording::{Block, Note, ReadOptions, Source, Stream};
-
-/// Schemas remembered, at most: a recording has a few dozen.
-const SCHEMAS: usize = 4096;
-
-/// Bytes of a footer's data.
-const FOOTER: u64 = 20;
 
 /// A longer record of another topic is passed over without a look at its checksum.
 const WORTH_A_SEEK: u64 = LARGEST_PIECE as u64;
@@ -102,60 +99,6 @@ impl McapReader {
         Ok(mcap)
     }
 
-    /// Reads the summary at the end of the file, where one can go there and back; whether it names
-    /// all channels.
-    fn list(&mut self) -> Result<bool, Error> {
-        const END: usize = HEAD + FOOTER as usize + MAGIC.len();
-        let back = self.input.offset();
-        let Some(footer) = self.input.len().and_then(|len| len.checked_sub(END as u64)) else {
-            return Ok(false);
-        };
-        let mut listed = false;
-        if footer >= back && self.input.seek(footer)? && self.input.fill(END)? {
-            let end = self.input.at_hand();
-            let summary = match record::head(end) {
-                Some((op::FOOTER, FOOTER)) if end.ends_with(MAGIC) => {
-                    end.get(HEAD..).and_then(|data| Fields(data).u64()).unwrap_or(0)
-                }
-                _ => 0,
-            };
-            if summary >= back && self.input.seek(summary)? {
-                listed = self.summary()?;
-            }
-        }
-        self.input.seek(back)?;
-        Ok(listed)
-    }
-
-    /// Reads schemas and channels of the summary; whether it has all.
-    fn summary(&mut self) -> Result<bool, Error> {
-        let (mut channels, mut counted) = (0, None);
-        loop {
-            let Next::Record(op, len) = self.next()? else { return Ok(false) };
-            match op {
-                op::SCHEMA => self.schema(len)?,
-                op::CHANNEL => {
-                    self.channel(len)?;
-                    channels += 1;
-                }
-                op::STATISTICS => {
-                    let mut fields = Fields(self.data(len)?);
-                    let (messages, _schemas) = (fields.u64(), fields.u16());
-                    counted = fields.u32();
-                    self.expected = messages;
-                }
-                op::FOOTER => break,
-                // No summary: the footer is wrong.
-                0 | op::HEADER | op::MESSAGE | op::CHUNK | op::DATA_END => return Ok(false),
-                _ => {}
-            }
-            if !self.input.skip(len)? {
-                return Ok(false);
-            }
-        }
-        Ok(counted.map_or(channels > 0, |counted| counted == channels))
-    }
-
     /// What comes next; nothing is consumed.
     #[inline]
     fn next(&mut self) -> Result<Next, Error> {
@@ -172,33 +115,6 @@ impl McapReader {
         self.input.fill(len)?;
         let here = self.input.at_hand();
         Ok(here.get(HEAD..len.min(here.len())).unwrap_or_default())
-    }
-
-    /// Takes note of a schema; one that is cut off says nothing.
-    fn schema(&mut self, len: u64) -> Result<(), Error> {
-        let mut fields = Fields(self.data(len)?);
-        if let (Some(id), Some(name)) = (fields.u16(), fields.text())
-            && self.schemas.len() < SCHEMAS
-            && !self.schemas.iter().any(|(known, _)| *known == id)
-        {
-            self.schemas.push((id, name));
-        }
-        Ok(())
-    }
-
-    /// Takes note of a channel.
-    fn channel(&mut self, len: u64) -> Result<(), Error> {
-        let mut fields = Fields(self.data(len)?);
-        let (Some(id), Some(schema)) = (fields.u16(), fields.u16()) else { return Ok(()) };
-        let (Some(topic), Some(encoding)) = (fields.text(), fields.text()) else { return Ok(()) };
-        let known = self.schemas.iter().find(|(known, _)| *known == schema);
-        let type_name = known.map(|(_, name)| name.clone()).unwrap_or_default();
-        let holds = holds(&type_name, &encoding);
-        let new = self.topics.add(Connection { number: id.into(), topic, type_name, holds });
-        if new && !self.listed {
-            self.topics.choose(self.input.path())?;
-        }
-        Ok(())
     }
 
     /// Takes one record; `false` at the end.
@@ -236,6 +152,21 @@ impl McapReader {
             _ => {}
         }
         self.pass(len)
+    }
+
+    /// The last record: the magic ends the file.
+    #[cold]
+    fn footer(&mut self, len: u64) -> Result<bool, Error> {
+        self.data_ended = true;
+        if !self.input.skip(len)?
+            || !self.input.fill(MAGIC.len())?
+            || !self.input.at_hand().starts_with(MAGIC)
+        {
+            return Ok(self.cut_off());
+        }
+        self.input.consume(MAGIC.len());
+        self.ended = true;
+        Ok(false)
     }
 
     /// Takes the message at hand.
@@ -400,123 +331,6 @@ impl McapReader {
     fn behind(&mut self, next: u64) -> Result<bool, Error> {
         let padding = next.saturating_sub(self.input.offset());
         if self.input.skip(padding)? { Ok(true) } else { Ok(self.cut_off()) }
-    }
-
-    /// The record at hand goes beyond the end of the file, or of what a chunk holds.
-    fn ended_here(&mut self) -> Result<bool, Error> {
-        if self.is_packed() { self.leave_chunk(true) } else { Ok(self.cut_off()) }
-    }
-
-    /// Looks for the place where messages or chunks go on behind what cannot be read.
-    #[cold]
-    fn damaged(&mut self) -> Result<bool, Error> {
-        /// More than the head of a chunk or message.
-        const TAIL: usize = HEAD + record::CHUNK;
-        let (start, at) = (self.input.file_offset(), self.input.offset());
-        let limit = self.chunk.as_ref().and_then(|chunk| chunk.end);
-        let cut = self.chunk.is_none() && self.input.len().is_some();
-        if let Some(chunk) = &mut self.chunk {
-            chunk.do_not_check();
-        }
-        let mut step = 1;
-        let found = loop {
-            if !self.input.skip(step as u64)? {
-                break false;
-            }
-            let more = self.input.fill(TAIL + 1)?;
-            let mut here = self.input.at_hand();
-            if let Some(limit) = limit {
-                let inside = usize::try_from(limit.saturating_sub(self.input.offset()));
-                here = here.get(..here.len().min(inside.unwrap_or(usize::MAX))).unwrap_or_default();
-            }
-            let message = self.repeat.and_then(|repeat| repeat.find(here));
-            let chunk = self.chunk.is_none().then(|| find_chunk(here)).flatten();
-            if let Some(at) = message.into_iter().chain(chunk).min() {
-                self.input.skip(at as u64)?;
-                break true;
-            }
-            if !more || limit.is_some_and(|l| self.input.offset() + here.len() as u64 >= l) {
-                self.input.skip(here.len() as u64)?;
-                break false;
-            }
-            step = here.len() - TAIL;
-        };
-        let lost = self.input.offset() - at;
-        if !found && cut && !self.data_ended {
-            self.warn(format!(
-                "is damaged or cut off at byte {start}: {lost} bytes are lost, and what comes \
-                 before is used"
-            ));
-        } else if self.data_ended {
-            self.warn(format!("is damaged behind its data, at byte {start}: no message is lost"));
-        } else {
-            self.warn(format!("is damaged at byte {start}: {lost} bytes are lost"));
-        }
-        if !found && self.chunk.is_none() {
-            self.ended = true;
-        }
-        Ok(!self.ended)
-    }
-
-    /// Says that the file was cut off; there is no more to read.
-    #[cold]
-    fn cut_off(&mut self) -> bool {
-        self.ended = true;
-        self.warn(if self.data_ended {
-            "is cut off behind its data: no message is lost".into()
-        } else {
-            "ends in the middle of a record: what comes before is used".into()
-        });
-        false
-    }
-
-    /// The file ends with a whole record that is no footer.
-    #[cold]
-    fn at_end(&mut self) -> bool {
-        self.ended = true;
-        self.warn(if self.data_ended {
-            "is cut off behind its data: no message is lost".into()
-        } else {
-            "was not closed: what was recorded last may be missing".into()
-        });
-        false
-    }
-
-    /// The last record: the magic ends the file.
-    #[cold]
-    fn footer(&mut self, len: u64) -> Result<bool, Error> {
-        self.data_ended = true;
-        if !self.input.skip(len)?
-            || !self.input.fill(MAGIC.len())?
-            || !self.input.at_hand().starts_with(MAGIC)
-        {
-            return Ok(self.cut_off());
-        }
-        self.input.consume(MAGIC.len());
-        self.ended = true;
-        Ok(false)
-    }
-
-    fn warn(&mut self, what: String) {
-        /// Damage is told so often, at most.
-        const TOLD: usize = 20;
-        if self.notes.len() < TOLD {
-            self.notes.push(Note::Warning(format!("{} {what}", self.input.path().display())));
-        }
-    }
-
-    /// Says, once, at the end, what was strange about the messages.
-    fn warn_of_messages(&mut self) {
-        let mut notes = self.taken.take_notes(self.input.path());
-        self.notes.append(&mut notes);
-        if self.unknown > 0 {
-            self.warn(format!("has {} messages of channels that it does not name", self.unknown));
-        }
-        if let Some(expected) = self.expected.filter(|expected| *expected > self.messages) {
-            let found = self.messages;
-            self.warn(format!("says that it has {expected} messages, of which {found} were found"));
-        }
-        (self.unknown, self.expected) = (0, None);
     }
 }
 
