@@ -151,7 +151,12 @@ fn of_values(to: &mut Vec<String>, sensor: &SensorNoise) {
 fn of_stamps(to: &mut Vec<String>, stamps: &Summary) {
     let Summary { samples, gap_count, missing, duplicates, backward, restarts, .. } = *stamps;
     if gap_count > 0 {
-        to.push(format!("samples missing: {missing}, gaps: {gap_count}"));
+        let longest = stamps.gaps.iter().max_by_key(|gap| gap.missing);
+        let longest = longest.filter(|_| stamps.rate_hz > 0.0).map_or_else(String::new, |gap| {
+            let length = gap.missing as f64 / stamps.rate_hz;
+            format!(", the longest of {length:.3} s, {} after the start", seconds(gap.at_s))
+        });
+        to.push(format!("samples missing: {missing}, gaps: {gap_count}{longest}"));
     }
     if duplicates > samples / 2 {
         to.push(
@@ -174,8 +179,18 @@ fn of_stamps(to: &mut Vec<String>, stamps: &Summary) {
             seconds(step.at_s)
         ));
     }
-    if restarts > 0 {
-        to.push(format!("times that the clock was set back or stood still: {restarts}"));
+    if let Some(first) = stamps.breaks.first() {
+        let at = seconds(first.at_s);
+        let what = if first.by_s > 0.0 {
+            format!("nothing was recorded for {}, {at} after the start", seconds(first.by_s))
+        } else {
+            format!("the clock was set back by {}, {at} after the start", seconds(-first.by_s))
+        };
+        let more = match restarts {
+            1 => String::new(),
+            n => format!(" (the first of {n} such breaks)"),
+        };
+        to.push(format!("{what}{more}: no averaging time spans that"));
     }
 }
 

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::Quantity;
 use crate::calibrate::{AxisNoise, Calibration, SensorKind, SensorNoise};
+use crate::recording::ClockStep;
 
 /// Names of the axes, in order.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
@@ -57,8 +58,10 @@ fn sensor(sensor: &SensorNoise) -> Value {
         .collect();
     let disturbed: Vec<_> =
         sensor.disturbed.iter().map(|s| json!({"from_s": s.from_s, "to_s": s.to_s})).collect();
-    let clock_steps: Vec<_> =
-        stamps.clock_steps.iter().map(|s| json!({"at_s": s.at_s, "by_s": s.by_s})).collect();
+    let steps = |steps: &[ClockStep]| -> Vec<_> {
+        steps.iter().map(|s| json!({"at_s": s.at_s, "by_s": s.by_s})).collect()
+    };
+    let (clock_steps, breaks) = (steps(&stamps.clock_steps), steps(&stamps.breaks));
     let checks = &sensor.checks;
     json!({
         "topic": sensor.topic,
@@ -71,6 +74,7 @@ fn sensor(sensor: &SensorNoise) -> Value {
         "duplicates": stamps.duplicates,
         "backward": stamps.backward,
         "restarts": stamps.restarts,
+        "breaks": breaks,
         "non_finite": sensor.rejected,
         "clock_steps": clock_steps,
         "rate_sd_hz": stamps.rate_sd_hz,

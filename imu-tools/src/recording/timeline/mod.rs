@@ -4,8 +4,10 @@
 //! Allan ladder wants consecutive readings and the number of those that did not come. So the grid
 //! of the sensor's own clock is fitted to the first [`PREFIX`] stamps by least squares and then
 //! followed slowly, in phase and period. A sample belongs to the next grid point, whatever its
-//! stamp, unless the stamps that follow *all* stay away from the grid as well: a late stamp is
-//! followed by one in its place, a lost sample is not. The rules are those of `grid.rs`.
+//! stamp, unless the stamps that follow stay away from the grid as well: a late stamp is followed by
+//! others in their places, a lost sample is not. The rules are those of `grid.rs`. With a jitter (rms)
+//! of a fifth of the period and more than one sample of fifty lost, a loss may be placed late or
+//! missed.
 //!
 //! ```
 //! use imu_tools::recording::{Event, Sample, Timeline};
@@ -88,6 +90,9 @@ pub struct Summary {
     pub clock_steps: Vec<ClockStep>,
     /// Times that the timeline was started anew.
     pub restarts: u64,
+    /// Where, and by how much stamps jumped there: backwards, or forwards by more than an hour. The
+    /// first ones.
+    pub breaks: Vec<ClockStep>,
     /// Root mean square of stamp minus grid, seconds.
     pub jitter_s: f64,
 }
@@ -261,6 +266,10 @@ impl Timeline {
                     self.hand_on(to);
                     to(Event::Restart);
                     self.summary.restarts += 1;
+                    if self.summary.breaks.len() < Summary::GAPS_LISTED {
+                        let at_s = (self.nanoseconds + grid.elapsed()) * 1e-9;
+                        self.summary.breaks.push(ClockStep { at_s, by_s: shift * 1e-9 });
+                    }
                     self.close_stretch(&grid);
                     grid.restart(shift);
                 }
