@@ -3,10 +3,12 @@
 //! Records are taken as they come. What cannot be read is stepped over to the next bytes that have
 //! the form of a record, and told.
 
+mod described;
+mod lost;
+
 use super::account::Account;
 use super::chunk::{Bytes, Left};
-use super::connection;
-use super::damage::{Among, TAIL, next_record};
+use super::damage::{Among, next_record};
 use super::record::{Header, prefixed};
 use super::repeat::Repeat;
 use super::samples::Samples;
@@ -19,12 +21,6 @@ use crate::recording::{Block, Note, ReadOptions, Source, Stream};
 
 /// Headers have less than 100 bytes, or a little more than their topic's name.
 const LARGEST_HEADER: usize = 64 * 1024;
-
-/// Looked through at once for the next record after damage.
-const SCAN: usize = 64 * 1024;
-
-/// Damage is told so often, at most.
-const TOLD: u32 = 20;
 
 /// A bag being read.
 pub struct BagReader {
@@ -107,66 +103,13 @@ impl BagReader {
         bag.list()?;
         bag.topics.choose(bag.bytes.input().path())?;
         let mut ahead = Block::default();
-        while !bag.listed && !bag.topics.any() && bag.record(&mut ahead)? {}
+        while !bag.listed && !bag.topics.any() && bag.record(&mut ahead)? {
+            ahead.clear();
+        }
         if !bag.topics.any() || (bag.listed && !bag.topics.complete()) {
             return Err(bag.topics.not_found(bag.bytes.input().path()));
         }
         Ok(bag)
-    }
-
-    /// Takes what the first record says of the bag; leaves anything else to the main loop.
-    fn bag_header(&mut self) -> Result<(), Error> {
-        let Next::Record(record @ Record { op: op::BAG_HEADER, .. }) = self.next()? else {
-            return Ok(());
-        };
-        let header = self.header(&record).unwrap_or_default();
-        let encryptor = header.encryptor.unwrap_or_default();
-        if !encryptor.is_empty() && encryptor != b"rosbag/NoEncryptor" {
-            return Err(Error::data(format!(
-                "{} is encrypted by {}: decrypt it with the key that it was recorded with, and \
-                 read the result",
-                self.bytes.input().path().display(),
-                String::from_utf8_lossy(encryptor)
-            )));
-        }
-        self.account = Account::of(&header);
-        // Blanks fill it up; where there is a record in them, its length is wrong.
-        let (start, len) = (8 + record.header, 8 + record.header + record.data);
-        let whole = self.bytes.fill(len)?;
-        let bytes = self.bytes.at_hand();
-        let blanks = bytes.get(..len).unwrap_or(bytes).get(start..).unwrap_or_default();
-        if record.data > LARGEST_HEADER || next_record(blanks, Among::Records).is_some() {
-            self.damaged(!whole)?;
-        } else {
-            self.step_over(&record)?;
-        }
-        Ok(())
-    }
-
-    /// Reads all connections from the end of the file, where one can go there and back.
-    fn list(&mut self) -> Result<(), Error> {
-        let back = self.bytes.offset();
-        let index_pos = self.account.index_pos;
-        if self.ended || index_pos < back || !self.bytes.input_mut().seek(index_pos)? {
-            return Ok(());
-        }
-        let mut found = false;
-        self.listed = loop {
-            match self.next()? {
-                Next::Record(record @ Record { op: op::CONNECTION, .. }) => {
-                    self.connection(&record)?;
-                    found = true;
-                    if !self.bytes.skip(record.len())? {
-                        break false;
-                    }
-                }
-                Next::Record(Record { op: op::CHUNK_INFO, .. }) => break true,
-                Next::End => break found,
-                _ => break false,
-            }
-        };
-        self.bytes.input_mut().seek(back)?;
-        Ok(())
     }
 
     /// What comes next; nothing is consumed.
@@ -285,31 +228,6 @@ impl BagReader {
         self.bytes.consume(used);
     }
 
-    /// Takes note of a connection; whether it is new. A description that is too large or cut off
-    /// says nothing.
-    fn connection(&mut self, record: &Record) -> Result<bool, Error> {
-        let Some(number) = record.conn else { return Ok(false) };
-        let start = 8 + record.header;
-        if !self.bytes.fill(start + record.data)? {
-            return Ok(false);
-        }
-        let bytes = self.bytes.at_hand();
-        let header = bytes.get(4..4 + record.header).unwrap_or_default();
-        let data = bytes.get(start..start + record.data).unwrap_or_default();
-        let Some(connection) = connection::described(number, header, data) else {
-            return Ok(false);
-        };
-        let known = self.topics.knows(number);
-        let added = self.topics.add(connection);
-        if known && added {
-            let at = self.bytes.at();
-            self.warn(format!(
-                "has a damaged description of connection {number}: its messages before {at} are lost"
-            ));
-        }
-        Ok(added)
-    }
-
     /// Enters a chunk: its records come next.
     fn enter_chunk(&mut self, record: &Record) -> Result<bool, Error> {
         if self.bytes.unpacked() {
@@ -384,79 +302,6 @@ impl BagReader {
             return Ok(true);
         }
         Ok(self.over(&at, from, true))
-    }
-
-    /// Steps over what cannot be read, to the next record; whether there is more to read.
-    /// `piece`: it can be a record whose end is missing.
-    #[cold]
-    fn damaged(&mut self, piece: bool) -> Result<bool, Error> {
-        let (at, from) = (self.bytes.at(), self.bytes.offset());
-        self.bytes.consume(1);
-        if !self.search()? {
-            return Ok(self.over(&at, from, piece));
-        }
-        let lost = self.bytes.offset() - from;
-        self.warn(format!("is damaged at {at}: {lost} bytes are lost"));
-        Ok(true)
-    }
-
-    /// Goes to the next record; `false`, at the end of the chunk or file, where there is none.
-    fn search(&mut self) -> Result<bool, Error> {
-        let among = if self.bytes.in_chunk() { Among::Records } else { Among::Anything };
-        loop {
-            let more = self.bytes.fill(SCAN)?;
-            let bytes = self.bytes.at_hand();
-            let found = next_record(bytes, among);
-            let clear = if more { bytes.len().saturating_sub(TAIL) } else { bytes.len() };
-            self.bytes.consume(found.unwrap_or(clear));
-            if found.is_some() || !more {
-                return Ok(found.is_some());
-            }
-        }
-    }
-
-    /// Says that nothing more was found in the chunk or file, unless that will be said when it is
-    /// left; whether there is more to read.
-    fn over(&mut self, at: &str, from: u64, piece: bool) -> bool {
-        let lost = self.bytes.offset() - from;
-        let in_chunk = self.bytes.in_chunk();
-        if !piece || !self.bytes.cut() {
-            let of = if in_chunk { "the rest of its chunk" } else { "the rest" };
-            self.warn(format!("is damaged at {at}: {of}, {lost} bytes, is lost"));
-        } else if !in_chunk {
-            return self.end(true);
-        }
-        true
-    }
-
-    /// Says, once, what the bag lacks and what was strange in it. There is nothing more to read.
-    #[cold]
-    fn end(&mut self, cut: bool) -> bool {
-        self.ended = true;
-        let unknown = self.unknown;
-        let untold = self.warnings.saturating_sub(TOLD);
-        self.warnings = 0;
-        if untold > 0 {
-            self.warn(format!("is damaged in {untold} more places"));
-        }
-        if let Some(closing) = self.account.closing(self.bytes.offset(), cut) {
-            self.warn(closing);
-        }
-        for strange in self.samples.strange() {
-            self.warn(strange);
-        }
-        if unknown > 0 {
-            self.warn(format!("has {unknown} messages of topics that it does not name"));
-        }
-        false
-    }
-
-    fn warn(&mut self, what: String) {
-        self.warnings = self.warnings.saturating_add(1);
-        if self.warnings <= TOLD {
-            let path = self.bytes.input().path().display();
-            self.notes.push(Note::Warning(format!("{path} {what}")));
-        }
     }
 }
 
