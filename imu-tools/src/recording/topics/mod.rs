@@ -5,46 +5,19 @@
 //! ([`Topics::choose`]) whenever one is new, and takes from a message what the [`Role`] of its
 //! connection wants. A thermometer is taken along where there is exactly one.
 
+mod connections;
+mod wanted;
 mod words;
 
 use std::path::Path;
 
-use super::sensor::Sensor;
 use super::{Note, ReadOptions, Stream};
 use crate::error::Error;
-use words::{sensor, twins};
+use connections::{Connections, same};
+use wanted::Wanted;
+use words::twins;
 
-/// Topics listed in an error, at most.
-const LISTED: usize = 40;
-
-/// Connections remembered, at most: a recording has a few dozen.
-const CONNECTIONS: usize = 4096;
-
-/// What the messages of a connection are to us.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Holds {
-    /// Readings of an IMU in a layout that we know.
-    Imu,
-    /// Readings of a thermometer in a layout that we know.
-    Temperature,
-    /// Readings of an IMU that cannot be read, and why: a whole sentence without its beginning.
-    Unreadable(String),
-    /// Something else.
-    Other,
-}
-
-/// A publisher of a topic, as the recording describes it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Connection {
-    /// By which the recording calls it.
-    pub number: u32,
-    /// As the recording writes it.
-    pub topic: String,
-    /// Name of its messages' type.
-    pub type_name: String,
-    /// What they hold.
-    pub holds: Holds,
-}
+pub use connections::{Connection, Holds};
 
 /// Which sensors are taken from a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,48 +32,13 @@ pub struct Role {
     pub temperature: bool,
 }
 
-/// The topics of the two sensors; `None` for one that is not wanted.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Wanted {
-    gyroscope: Option<String>,
-    accelerometer: Option<String>,
-}
-
-impl Wanted {
-    /// What one topic gives: both sensors, unless it is named for one.
-    fn by_name(topic: &str) -> Self {
-        let sensor = sensor(topic);
-        let unless = |other| (sensor != Some(other)).then(|| topic.to_owned());
-        Self { gyroscope: unless(Sensor::Accelerometer), accelerometer: unless(Sensor::Gyroscope) }
-    }
-
-    /// What two topics that are named for one sensor each give.
-    fn pair(a: &str, b: &str) -> Self {
-        let (g, a) = if sensor(a) == Some(Sensor::Gyroscope) { (a, b) } else { (b, a) };
-        Self { gyroscope: Some(g.to_owned()), accelerometer: Some(a.to_owned()) }
-    }
-
-    /// What was asked for: one topic, or two joined by a comma, gyroscope's and accelerometer's.
-    fn asked(topics: &str) -> Self {
-        match topics.split_once(',') {
-            None => Self::by_name(topics.trim()),
-            Some((gyroscope, accelerometer)) => Self {
-                gyroscope: Some(gyroscope.trim().to_owned()),
-                accelerometer: Some(accelerometer.trim().to_owned()),
-            },
-        }
-    }
-}
-
 /// What was asked for, what there is, and what is taken.
 #[derive(Clone, Debug)]
 pub struct Topics {
     asked: Option<Wanted>,
     /// Of several IMUs the first is taken.
     survey: bool,
-    connections: Vec<Connection>,
-    /// Messages seen of each.
-    messages: Vec<u64>,
+    connections: Connections,
     roles: Vec<Role>,
     /// What there is to say about the choice, until it was taken.
     notes: Vec<Note>,
@@ -111,19 +49,13 @@ pub struct Topics {
     pub accelerometer: String,
 }
 
-/// `imu` and `/imu` are the same topic.
-fn same(a: &str, b: &str) -> bool {
-    a.trim_start_matches('/') == b.trim_start_matches('/')
-}
-
 impl Topics {
     /// Nothing is known yet but what is asked for.
     pub fn new(options: &ReadOptions) -> Self {
         Self {
             asked: options.topic.as_deref().map(Wanted::asked),
             survey: options.survey,
-            connections: Vec::new(),
-            messages: Vec::new(),
+            connections: Connections::default(),
             roles: Vec::new(),
             notes: Vec::new(),
             told: false,
@@ -136,11 +68,6 @@ impl Topics {
     #[inline]
     pub fn role(&self, number: u32) -> Option<Role> {
         self.roles.iter().copied().find(|role| role.number == number)
-    }
-
-    /// Whether the bag described this connection.
-    pub fn knows(&self, number: u32) -> bool {
-        self.connections.iter().any(|connection| connection.number == number)
     }
 
     /// Whether all that was asked for was found, or, if nothing was, an IMU.
@@ -160,38 +87,26 @@ impl Topics {
         !self.gyroscope.is_empty() || !self.accelerometer.is_empty()
     }
 
-    /// Takes note of a connection; whether it is new, so that a choice is to be made. One that is
-    /// described again keeps its first description, unless only the second can be used: then the
-    /// first was damaged.
+    /// Whether the recording described this connection.
+    pub fn knows(&self, number: u32) -> bool {
+        self.connections.knows(number)
+    }
+
+    /// Takes note of a connection; whether a choice is to be made, as [`Connections::add`].
     pub fn add(&mut self, connection: Connection) -> bool {
-        let known = self.connections.iter_mut().find(|known| known.number == connection.number);
-        if let Some(known) = known {
-            let better = known.holds == Holds::Other && connection.holds != Holds::Other;
-            if better {
-                *known = connection;
-            }
-            return better;
-        }
-        if self.connections.len() >= CONNECTIONS {
-            return false;
-        }
-        self.connections.push(connection);
-        self.messages.push(0);
-        true
+        self.connections.add(connection)
     }
 
     /// Counts a message of a connection.
+    #[inline]
     pub fn count(&mut self, number: u32) {
-        let place = self.connections.iter().position(|c| c.number == number);
-        if let Some(count) = place.and_then(|place| self.messages.get_mut(place)) {
-            *count += 1;
-        }
+        self.connections.count(number);
     }
 
     /// All topics, those of one name and type as one.
     pub fn streams(&self) -> Vec<Stream> {
         let mut streams: Vec<Stream> = Vec::new();
-        for (connection, &messages) in self.connections.iter().zip(&self.messages) {
+        for (connection, messages) in self.connections.counted() {
             let same =
                 |s: &&mut Stream| s.name == connection.topic && s.type_name == connection.type_name;
             if let Some(stream) = streams.iter_mut().find(same) {
@@ -234,7 +149,7 @@ impl Topics {
     /// What to take where nothing was asked for; nothing as long as there is no IMU.
     fn find(&self, path: &Path, notes: &mut Vec<Note>) -> Result<Option<Wanted>, Error> {
         let imu = |c: &Connection| matches!(c.holds, Holds::Imu | Holds::Unreadable(_));
-        let found = self.names(imu);
+        let found = self.connections.names(imu);
         let path = path.display();
         match *found.as_slice() {
             [] => Ok(None),
@@ -250,7 +165,12 @@ impl Topics {
                 Ok(Some(pair))
             }
             [first, ..] if self.survey => {
-                let first = self.names(|c| c.holds == Holds::Imu).first().copied().unwrap_or(first);
+                let first = self
+                    .connections
+                    .names(|c| c.holds == Holds::Imu)
+                    .first()
+                    .copied()
+                    .unwrap_or(first);
                 let wanted = match found.iter().find(|other| twins(first, other)) {
                     Some(other) => Wanted::pair(first, other),
                     None => Wanted::by_name(first),
@@ -258,14 +178,14 @@ impl Topics {
                 notes.push(Note::Warning(format!(
                     "{path} has several Imu topics: {}; of them {first} is read, --topic TOPIC \
                      reads another one",
-                    self.list(imu)
+                    self.connections.list(imu)
                 )));
                 Ok(Some(wanted))
             }
             _ => Err(Error::usage(format!(
                 "{path} has several Imu topics: {}; choose one with --topic TOPIC, or \
                  --topic GYROSCOPE,ACCELEROMETER where each sensor has its own",
-                self.list(imu),
+                self.connections.list(imu),
             ))),
         }
     }
@@ -301,11 +221,11 @@ impl Topics {
     /// Takes the thermometer, if there is exactly one.
     fn take_thermometer(&mut self, path: &Path, notes: &mut Vec<Note>) {
         let thermometer = |c: &Connection| c.holds == Holds::Temperature;
-        if self.names(thermometer).len() > 1 {
+        if self.connections.names(thermometer).len() > 1 {
             notes.push(Note::Info(format!(
                 "{} has several thermometers, of which none is read: {}",
                 path.display(),
-                self.list(thermometer)
+                self.connections.list(thermometer)
             )));
             return;
         }
@@ -343,14 +263,14 @@ impl Topics {
         if std::mem::replace(&mut self.told, true) { Vec::new() } else { self.notes.clone() }
     }
 
-    /// The error for a bag whose end was reached, or whose list is complete, without finding the
-    /// topics.
+    /// The error for a recording whose end was reached, or whose list is complete, without finding
+    /// the topics.
     pub fn not_found(&self, path: &Path) -> Error {
         let path = path.display();
-        if self.connections.is_empty() {
+        if self.connections.iter().len() == 0 {
             return Error::data(format!("{path} holds no messages"));
         }
-        let all = self.list(|_| true);
+        let all = self.connections.list(|_| true);
         match &self.asked {
             None => Error::data(format!(
                 "{path} has no topic of an IMU (type sensor_msgs/Imu); it has {all}"
@@ -362,37 +282,6 @@ impl Topics {
                 Error::usage(format!("{path} has no topic {topic}; it has {all}"))
             }
         }
-    }
-
-    /// The names of topics, each once, in the order of the recording.
-    fn names(&self, which: impl Fn(&Connection) -> bool) -> Vec<&str> {
-        let mut names: Vec<&str> = Vec::new();
-        for connection in self.connections.iter().filter(|c| which(c)) {
-            if !names.iter().any(|name| same(name, &connection.topic)) {
-                names.push(&connection.topic);
-            }
-        }
-        names
-    }
-
-    /// The topics in words, each once.
-    fn list(&self, which: impl Fn(&Connection) -> bool) -> String {
-        let mut listed: Vec<String> = Vec::new();
-        let mut more = 0;
-        for connection in self.connections.iter().filter(|c| which(c)) {
-            let one = format!("{} ({})", connection.topic, connection.type_name);
-            if listed.contains(&one) {
-            } else if listed.len() < LISTED {
-                listed.push(one);
-            } else {
-                more += 1;
-            }
-        }
-        let mut list = listed.join(", ");
-        if more > 0 {
-            list.push_str(&format!(" and {more} more"));
-        }
-        list
     }
 }
 
