@@ -1,5 +1,6 @@
 //! What stands in which column: told by the user, by the header's names, or by custom.
 
+use super::celsius::Celsius;
 use super::names::Name;
 use super::told::Told;
 use crate::recording::sensor::Sensor;
@@ -24,35 +25,6 @@ pub enum Column {
     Force(u8),
     /// Temperature.
     Temperature,
-}
-
-/// A scale of temperature: degrees Celsius are `factor` times what stands there, plus `zero`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Celsius {
-    /// Of one degree.
-    pub factor: f64,
-    /// Where the scale's zero is.
-    pub zero: f64,
-}
-
-impl Default for Celsius {
-    fn default() -> Self {
-        Self { factor: 1.0, zero: 0.0 }
-    }
-}
-
-impl Celsius {
-    /// The scale of that name; `None` for one that nobody knows.
-    fn of(unit: Option<&str>) -> Option<Self> {
-        let letters = unit.unwrap_or_default().to_lowercase();
-        let letters: String = letters.chars().filter(|c| c.is_alphabetic()).collect();
-        match letters.trim_start_matches("deg") {
-            "" | "c" | "celsius" | "cel" => Some(Self::default()),
-            "k" | "kelvin" => Some(Self { factor: 1.0, zero: -273.15 }),
-            "f" | "fahrenheit" => Some(Self { factor: 5.0 / 9.0, zero: -160.0 / 9.0 }),
-            _ => None,
-        }
-    }
 }
 
 /// Meanings of all columns, and the units that their names tell.

@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
-use super::columns::{Celsius, Column, Columns};
+use super::celsius::Celsius;
+use super::columns::{Column, Columns};
 use super::dialect::{Dialect, Separator, pointed};
-use super::{date, number, time_unit};
+use super::granted::Granted;
+use super::{date, number};
 use crate::error::Error;
 use crate::recording::sensor::Sensor;
-use crate::recording::{ForceUnit, Note, RateUnit, ReadOptions, TimeUnit};
+use crate::recording::{Note, ReadOptions};
 
 /// How to read the rows of a table.
 pub struct Layout {
@@ -153,84 +155,34 @@ impl Layout {
             bytes_before: start.bytes_before,
             notes: Vec::new(),
         };
-        let mut told = Vec::new();
+        let name = name.to_string();
+        let header = format!("the header of {name}");
+        let mut granted = Granted::new(&found, options, &name, &header);
         if let Some(time_at) = time_at.filter(|at| !is_text(*at)) {
-            let unit = layout.unit_of_time(&start, time_at, &found, path, options, &mut told)?;
-            layout.time = Time::Number(unit.exponent());
+            let times = layout.times(&start, time_at);
+            let times: Vec<&[u8]> = times.iter().map(Vec::as_slice).collect();
+            layout.time = Time::Number(granted.time(options.time_unit, &times)?.exponent());
+        }
+        let (factors, notes) = granted.sensors()?;
+        (layout.rate, layout.force, layout.notes) = (factors.rate, factors.force, notes);
+        if layout.time != Time::Text {
             // A day beside a number is no part of it.
             for column in found.columns.iter_mut().filter(|c| **c == Column::Date) {
                 *column = Column::Other;
             }
         }
-        layout.take_units(path, options, &found, told)?;
         layout.columns = found.columns;
         Ok(layout)
     }
 
-    /// The unit of a column of times, and whether its rate can be.
-    fn unit_of_time(
-        &self,
-        start: &Start<'_>,
-        time_at: usize,
-        found: &Columns,
-        path: &Path,
-        options: &ReadOptions,
-        told: &mut Vec<String>,
-    ) -> Result<TimeUnit, Error> {
+    /// The first times, with a decimal point.
+    fn times(&self, start: &Start<'_>, time_at: usize) -> Vec<Vec<u8>> {
         // The last line at hand is empty, or may be cut.
         let rows = start.rows.get(..start.rows.len().saturating_sub(1).max(1)).unwrap_or_default();
         let rows = rows.iter().filter(|line| !is_aside(line));
-        let times: Vec<Vec<u8>> = rows
-            .filter_map(|line| self.dialect.fields(line).nth(time_at))
+        rows.filter_map(|line| self.dialect.fields(line).nth(time_at))
             .map(|field| if self.dialect.decimal_comma { pointed(field) } else { field.to_vec() })
-            .collect();
-        let times: Vec<&[u8]> = times.iter().map(Vec::as_slice).collect();
-        let said = found.time.unless(options.time_unit);
-        let unit = said.map_err(|what| unclear(path, what, "--time-unit"))?.unwrap_or_else(|| {
-            let unit = time_unit::from_data(&times);
-            told.push(format!("time as {}", unit.symbol()));
-            unit
-        });
-        if let Some(rate) = time_unit::implausible_rate(&times, unit) {
-            return Err(Error::data(format!(
-                "{} would have {rate:.2e} samples a second with time in {}: name the unit of its \
-                 time with --time-unit",
-                path.display(),
-                unit.symbol()
-            )));
-        }
-        Ok(unit)
-    }
-
-    /// Sets the factors and tells what was taken for granted.
-    fn take_units(
-        &mut self,
-        path: &Path,
-        options: &ReadOptions,
-        found: &Columns,
-        mut told: Vec<String>,
-    ) -> Result<(), Error> {
-        let name = path.display();
-        let rate = found.rate.unless(options.gyro_unit);
-        let rate = rate.map_err(|what| unclear(path, what, "--gyro-unit"))?;
-        let force = found.force.unless(options.accel_unit);
-        let force = force.map_err(|what| unclear(path, what, "--accel-unit"))?;
-        if !found.has(Column::Rate(0)) {
-            self.notes.push(Note::Warning(format!("{name} has no columns of a gyroscope")));
-        } else if rate.is_none() {
-            told.push("angular rate as rad/s (--gyro-unit)".into());
-        }
-        if !found.has(Column::Force(0)) {
-            self.notes.push(Note::Warning(format!("{name} has no columns of an accelerometer")));
-        } else if force.is_none() {
-            told.push("specific force as m/s^2 (--accel-unit)".into());
-        }
-        if !told.is_empty() {
-            self.notes.push(Note::Info(format!("{name} is read with {}", told.join(", "))));
-        }
-        self.rate = rate.unwrap_or(RateUnit::RadPerS).to_rad_s();
-        self.force = force.unwrap_or(ForceUnit::MPerS2).to_m_s2();
-        Ok(())
+            .collect()
     }
 }
 
@@ -335,9 +287,4 @@ fn sensor_by_name(path: &Path) -> Option<Sensor> {
         (false, true) => Some(Sensor::Accelerometer),
         _ => None,
     }
-}
-
-/// The error for a unit in the header that cannot be used.
-fn unclear(path: &Path, what: &str, flag: &str) -> Error {
-    Error::data(format!("in the header of {}, {what}; say which it is with {flag}", path.display()))
 }

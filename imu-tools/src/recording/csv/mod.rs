@@ -8,15 +8,17 @@
 //! so that sensors of different rates share a file; a field that is no finite number is a reading
 //! that failed.
 
+pub(super) mod celsius;
 pub(super) mod columns;
 mod date;
 pub(super) mod dialect;
+pub(super) mod granted;
 mod layout;
 mod names;
 pub(super) mod number;
 mod reader;
 mod row;
-pub(super) mod time_unit;
+mod time_unit;
 mod told;
 mod writer;
 

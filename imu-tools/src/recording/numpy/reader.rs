@@ -8,12 +8,12 @@ use super::header::Header;
 use super::is_archive;
 use super::scalar::Scalar;
 use crate::error::Error;
-use crate::recording::csv::columns::{Celsius, Column, Columns};
-use crate::recording::csv::time_unit;
+use crate::recording::csv::celsius::Celsius;
+use crate::recording::csv::columns::{Column, Columns};
+use crate::recording::csv::granted::Granted;
 use crate::recording::input::{Input, LARGEST_PIECE};
 use crate::recording::{
-    BLOCK_SAMPLES, Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Source, Stream,
-    Temperature,
+    BLOCK_SAMPLES, Block, Note, ReadOptions, Sample, Source, Stream, Temperature,
 };
 
 /// So many rows show the unit of time.
@@ -175,16 +175,15 @@ impl NumpyReader {
                 Header::read(&mut own, &self.name)?;
                 own
             }
-            // The only stream of rows is that which is already open.
-            None if candidate.before == 0 && input.as_ref().is_some_and(|i| i.len().is_none()) => {
-                input.take().ok_or_else(|| Error::data(format!("{} is read twice", self.name)))?
-            }
+            // In a pipe, the only stream of rows is that which is already open.
             None if self.len.is_none() => {
-                return Err(Error::data(format!(
-                    "{} is stored column by column, which can be read from a file only, not from a \
-                     pipe or inside of compression: save it row by row (order='C')",
-                    self.name
-                )));
+                input.take().filter(|_| candidate.before == 0).ok_or_else(|| {
+                    Error::data(format!(
+                        "{} is stored column by column, which can be read from a file only, not \
+                         from a pipe or inside of compression: save it row by row (order='C')",
+                        self.name
+                    ))
+                })?
             }
             None => {
                 let mut own = Input::open(path)?;
@@ -199,49 +198,16 @@ impl NumpyReader {
     /// Finds the units and tells what was taken for granted.
     fn take_units(&mut self, options: &ReadOptions, found: &Columns) -> Result<(), Error> {
         let name = self.name.clone();
-        let unclear = |what: &str, flag| {
-            Error::data(format!("in {name}, {what}; say which it is with {flag}"))
-        };
-        let mut told = Vec::new();
+        let mut granted = Granted::new(found, options, &name, &name);
         let time = self.places.iter().find(|place| place.column == Column::Time).copied();
         if let Some(time) = time {
             let texts = self.times_ahead(time)?;
             let texts: Vec<&[u8]> = texts.iter().map(String::as_bytes).collect();
-            let said = options.time_unit.or(time.scalar.unit);
-            let said = found.time.unless(said).map_err(|what| unclear(what, "--time-unit"))?;
-            let unit = said.unwrap_or_else(|| {
-                let unit = time_unit::from_data(&texts);
-                told.push(format!("time as {}", unit.symbol()));
-                unit
-            });
-            if let Some(rate) = time_unit::implausible_rate(&texts, unit) {
-                return Err(Error::data(format!(
-                    "{name} would have {rate:.2e} samples a second with time in {}: name the unit \
-                     of its time with --time-unit",
-                    unit.symbol()
-                )));
-            }
-            self.exponent = unit.exponent();
+            let given = options.time_unit.or(time.scalar.unit);
+            self.exponent = granted.time(given, &texts)?.exponent();
         }
-        let rate = found.rate.unless(options.gyro_unit);
-        let rate = rate.map_err(|what| unclear(what, "--gyro-unit"))?;
-        let force = found.force.unless(options.accel_unit);
-        let force = force.map_err(|what| unclear(what, "--accel-unit"))?;
-        if !found.has(Column::Rate(0)) {
-            self.notes.push(Note::Warning(format!("{name} has no columns of a gyroscope")));
-        } else if rate.is_none() {
-            told.push("angular rate as rad/s (--gyro-unit)".into());
-        }
-        if !found.has(Column::Force(0)) {
-            self.notes.push(Note::Warning(format!("{name} has no columns of an accelerometer")));
-        } else if force.is_none() {
-            told.push("specific force as m/s^2 (--accel-unit)".into());
-        }
-        if !told.is_empty() {
-            self.notes.push(Note::Info(format!("{name} is read with {}", told.join(", "))));
-        }
-        self.rate = rate.unwrap_or(RateUnit::RadPerS).to_rad_s();
-        self.force = force.unwrap_or(ForceUnit::MPerS2).to_m_s2();
+        let (factors, notes) = granted.sensors()?;
+        (self.rate, self.force, self.notes) = (factors.rate, factors.force, notes);
         Ok(())
     }
 
