@@ -22,7 +22,8 @@ pub const LARGEST_PIECE: usize = 1 << 20;
 /// Skips shorter than this are read, longer ones are sought where that is possible.
 const WORTH_A_SEEK: u64 = 1 << 20;
 
-enum From {
+/// Where the bytes come from.
+enum Origin {
     File {
         file: File,
         len: u64,
@@ -35,7 +36,7 @@ enum From {
 /// A buffered reader that shows its buffer.
 pub struct Input {
     path: PathBuf,
-    from: From,
+    from: Origin,
     buffer: Vec<u8>,
     start: usize,
     end: usize,
@@ -60,19 +61,19 @@ impl Input {
         if !about.is_file() {
             return Ok(Self::pipe(path, Box::new(file)));
         }
-        Ok(Self::new(path, From::File { file, len: about.len() }))
+        Ok(Self::new(path, Origin::File { file, len: about.len() }))
     }
 
     /// Reads a file that is open already, from its start; `path` is what errors call it.
     pub fn file(path: &Path, mut file: File) -> Result<Self, Error> {
         let len = file.seek(SeekFrom::End(0)).and_then(|len| file.rewind().map(|()| len));
         let len = len.map_err(|e| Error::io("read", path, e))?;
-        Ok(Self::new(path, From::File { file, len }))
+        Ok(Self::new(path, Origin::File { file, len }))
     }
 
     /// Reads from any stream; `path` is what errors call it.
     pub fn pipe(path: &Path, stream: Box<dyn Read + Send>) -> Self {
-        Self::new(path, From::Pipe(stream))
+        Self::new(path, Origin::Pipe(stream))
     }
 
     /// Reads what is unpacked from another input; `broken_off` is set when that ends too early.
@@ -84,7 +85,7 @@ impl Input {
         Self { broken_off, ..Self::pipe(path, stream) }
     }
 
-    fn new(path: &Path, from: From) -> Self {
+    fn new(path: &Path, from: Origin) -> Self {
         Self {
             path: path.to_owned(),
             from,
@@ -120,16 +121,16 @@ impl Input {
     /// Length of the file; of a pipe nobody knows it.
     pub fn len(&self) -> Option<u64> {
         match self.from {
-            From::File { len, .. } => Some(len),
-            From::Pipe(_) => None,
-            From::Inside(ref inside) => inside.outer().len(),
+            Origin::File { len, .. } => Some(len),
+            Origin::Pipe(_) => None,
+            Origin::Inside(ref inside) => inside.outer().len(),
         }
     }
 
     /// Offset in the file, also where [`Input::offset`] counts the bytes of a compressed piece.
     pub fn file_offset(&self) -> u64 {
         match &self.from {
-            From::Inside(inside) => inside.outer().file_offset(),
+            Origin::Inside(inside) => inside.outer().file_offset(),
             _ => self.offset,
         }
     }
@@ -139,7 +140,7 @@ impl Input {
     pub fn enter(&mut self, len: u64, compression: Compression) {
         let empty = Self {
             path: self.path.clone(),
-            from: From::Pipe(Box::new(io::empty())),
+            from: Origin::Pipe(Box::new(io::empty())),
             buffer: Vec::new(),
             start: 0,
             end: 0,
@@ -147,18 +148,18 @@ impl Input {
             broken_off: Arc::default(),
         };
         let outer = std::mem::replace(self, empty);
-        self.from = From::Inside(Box::new(Inside::new(outer, len, compression)));
+        self.from = Origin::Inside(Box::new(Inside::new(outer, len, compression)));
     }
 
     /// Whether the piece that was entered could not be decompressed to its end.
     pub fn is_damaged(&self) -> bool {
-        matches!(&self.from, From::Inside(inside) if inside.is_damaged())
+        matches!(&self.from, Origin::Inside(inside) if inside.is_damaged())
     }
 
     /// Goes back to the file, behind the piece; `false` when the file ends before.
     pub fn leave(&mut self) -> Result<bool, Error> {
-        match std::mem::replace(&mut self.from, From::Pipe(Box::new(io::empty()))) {
-            From::Inside(inside) => {
+        match std::mem::replace(&mut self.from, Origin::Pipe(Box::new(io::empty()))) {
+            Origin::Inside(inside) => {
                 let (outer, left) = inside.leave();
                 *self = outer;
                 self.skip(left)
@@ -188,9 +189,9 @@ impl Input {
             }
             let free = self.buffer.get_mut(self.end..).unwrap_or_default();
             let read = match &mut self.from {
-                From::File { file, .. } => file.read(free),
-                From::Pipe(stream) => stream.read(free),
-                From::Inside(inside) => Ok(inside.read(free)?),
+                Origin::File { file, .. } => file.read(free),
+                Origin::Pipe(stream) => stream.read(free),
+                Origin::Inside(inside) => Ok(inside.read(free)?),
             };
             match read {
                 Ok(0) => return Ok(false),
@@ -222,7 +223,7 @@ impl Input {
             self.consume(here as usize);
             left -= here;
             if left >= WORTH_A_SEEK
-                && let From::File { file, len } = &mut self.from
+                && let Origin::File { file, len } = &mut self.from
             {
                 let to = self.offset.saturating_add(left).min(*len);
                 file.seek(SeekFrom::Start(to)).map_err(|e| Error::io("read", &self.path, e))?;
@@ -237,7 +238,7 @@ impl Input {
 
     /// Goes to `offset`; `false`, and nothing happens, in a pipe or beyond the file's end.
     pub fn seek(&mut self, offset: u64) -> Result<bool, Error> {
-        let From::File { file, len } = &mut self.from else { return Ok(false) };
+        let Origin::File { file, len } = &mut self.from else { return Ok(false) };
         if offset > *len {
             return Ok(false);
         }

@@ -204,23 +204,24 @@ pub trait Sink: Send {
 /// How to read a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
-    /// The Imu topic of a bag, or two joined by a comma, gyroscope's and accelerometer's; `imu` and
-    /// `/imu` are the same. `None` takes the only one, or the pair that is named so.
+    /// The Imu topic of a recording of ROS or of a log, or two joined by a comma, gyroscope's and
+    /// accelerometer's; `imu` and `/imu` are the same. `None` takes the only one, or the pair that is
+    /// named so.
     pub topic: Option<String>,
     /// Where there are several IMUs, take the first and say so, in the place of an error: for those
     /// who want to know what a recording holds.
     pub survey: bool,
-    /// Stamp samples with the time at which the bag recorded them, not with their header's.
+    /// Stamp samples with the time at which they were recorded, not with their header's.
     pub bag_time: bool,
-    /// Columns of a CSV, such as `t,gx,gy,gz,ax,ay,az,-`. `None` finds them.
+    /// Columns of a table or array, such as `t,gx,gy,gz,ax,ay,az,-`. `None` finds them.
     pub columns: Option<String>,
-    /// Columns of a CSV by their names, such as `t=stamp,gx=omega.x`.
+    /// Columns of a table or array by their names, such as `t=stamp,gx=omega.x`.
     pub map: Option<String>,
-    /// Unit of the angular rates. `None` finds it in a CSV's header, or takes rad/s.
+    /// Unit of the angular rates. `None` finds it in a table's header, or takes rad/s.
     pub gyro_unit: Option<RateUnit>,
-    /// Unit of the specific forces. `None` finds it in a CSV's header, or takes m/s².
+    /// Unit of the specific forces. `None` finds it in a table's header, or takes m/s².
     pub accel_unit: Option<ForceUnit>,
-    /// Unit of a CSV's time. `None` finds it in the header or in the data.
+    /// Unit of a table's time. `None` finds it in the header or in the data.
     pub time_unit: Option<TimeUnit>,
 }
 

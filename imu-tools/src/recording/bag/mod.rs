@@ -10,7 +10,7 @@
 //! damage reading goes on with the next record. Everything lost is told.
 
 mod account;
-mod chunk;
+mod bytes;
 mod connection;
 mod damage;
 mod imu_message;
@@ -27,7 +27,7 @@ pub use reader::BagReader;
 pub use writer::BagWriter;
 
 /// The first line of every bag of this version.
-pub const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
+const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
 
 /// Record kinds, field `op`.
 mod op {

@@ -16,7 +16,7 @@ pub struct Repeat {
     /// Length of the whole record.
     pub len: usize,
     /// Where its payload starts.
-    pub payload: usize,
+    payload: usize,
     /// What is wanted of it.
     pub role: Role,
     bytes: [u8; LONGEST],

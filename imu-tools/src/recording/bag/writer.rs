@@ -13,10 +13,10 @@ use crate::output::Output;
 use crate::recording::{Block, Sink, merge};
 
 /// The topic that is written.
-pub const TOPIC: &str = "/imu";
+const TOPIC: &str = "/imu";
 
 /// The frame that is written.
-pub const FRAME: &str = "imu";
+const FRAME: &str = "imu";
 
 /// A chunk is closed when it has grown to this.
 const CHUNK: usize = 768 * 1024;

@@ -1,4 +1,4 @@
-//! How a table is written: what stands between fields, in numbers, around text and at line ends.
+//! How a table is written: what stands between fields, in numbers and around text.
 
 use super::number;
 

@@ -23,7 +23,7 @@ const TABLES: [&str; 3] = ["data.csv", "data.csv.gz", "data.csv.zst"];
 ///
 /// # Errors
 /// When there are several, or its table cannot be read.
-pub fn open(folder: &Path, options: &ReadOptions) -> Result<Option<Box<dyn Source>>, Error> {
+pub(super) fn open(folder: &Path, options: &ReadOptions) -> Result<Option<Box<dyn Source>>, Error> {
     let mut found = tables(folder)?;
     let mut notes = Vec::new();
     if found.len() > 1 {
@@ -81,7 +81,7 @@ fn imus(parent: &Path) -> Result<Vec<PathBuf>, Error> {
 }
 
 /// Whether a recording to be written at `path` is to be a folder: it ends in `/` or in `mav0`.
-pub fn is_folder_name(path: &Path) -> bool {
+pub(super) fn is_folder_name(path: &Path) -> bool {
     let text = path.as_os_str().as_encoded_bytes();
     let slash = text.last().is_some_and(|&byte| std::path::is_separator(char::from(byte)));
     slash || path.file_name().is_some_and(|name| name == "mav0")

@@ -25,7 +25,7 @@ pub use reader::McapReader;
 pub use writer::McapWriter;
 
 /// The first and the last eight bytes of a file.
-pub const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+pub(super) const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 /// Kinds of records.
 mod op {

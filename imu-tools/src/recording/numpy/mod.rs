@@ -16,7 +16,7 @@ mod scalar;
 pub use reader::NumpyReader;
 
 /// Whether a file begins as an array or an archive of arrays does.
-pub fn is_numpy(start: &[u8]) -> bool {
+pub(super) fn is_numpy(start: &[u8]) -> bool {
     start.starts_with(header::MAGIC) || is_archive(start)
 }
 

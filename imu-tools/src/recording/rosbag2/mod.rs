@@ -14,5 +14,6 @@ mod metadata;
 mod sqlite;
 
 pub use database::DatabaseReader;
-pub use folder::{FolderReader, is_rosbag2};
-pub use sqlite::MAGIC;
+pub use folder::FolderReader;
+pub(super) use folder::is_rosbag2;
+pub(super) use sqlite::MAGIC;

@@ -239,7 +239,7 @@ impl Channel {
             Readings::Fifo { axes, dt, scale, samples } => {
                 let (dt, scale) = (dt.read(message)?, scale.read(message)?);
                 let samples = samples.read(message)? as usize;
-                if samples > MOST {
+                if samples > LONGEST_BATCH {
                     return None;
                 }
                 if !(dt > 0.0 && dt <= SLOWEST_US && scale.is_finite() && scale != 0.0) {
@@ -264,7 +264,7 @@ impl Channel {
 }
 
 /// Samples of a FIFO in one message, at most: they are counted in a byte.
-pub const MOST: usize = 255;
+pub const LONGEST_BATCH: usize = 255;
 
 /// Within 1 of the end of 16 bits, as `PX4Gyroscope.cpp` has it: some chips use the lowest bit for
 /// something else, and a turned axis changes its sign.

@@ -47,4 +47,4 @@ mod survey;
 pub use reader::UlogReader;
 
 /// The first bytes of every log; a byte of version and the time of the start follow.
-pub const MAGIC: &[u8] = b"ULog\x01\x12\x35";
+pub(super) const MAGIC: &[u8] = b"ULog\x01\x12\x35";

@@ -1,7 +1,7 @@
 //! Reading a log front to back, in a file or a pipe.
 
 use super::MAGIC;
-use super::channel::{MOST, Taken};
+use super::channel::{LONGEST_BATCH, Taken};
 use super::choice::Choice;
 use super::definitions::{Definitions, Subscription};
 use super::messages::{Message, Messages};
@@ -240,7 +240,7 @@ fn scale(samples: &mut [Sample], factor: f64) {
 #[inline]
 fn has_room(block: &Block) -> bool {
     let longest = block.gyroscope.len().max(block.accelerometer.len());
-    longest.max(block.temperature.len()) <= BLOCK_SAMPLES - MOST
+    longest.max(block.temperature.len()) <= BLOCK_SAMPLES - LONGEST_BATCH
 }
 
 impl Source for UlogReader {

@@ -7,7 +7,7 @@ mod described;
 mod lost;
 
 use super::account::Account;
-use super::chunk::{Bytes, Left};
+use super::bytes::{Bytes, Left};
 use super::damage::{Among, next_record};
 use super::record::{Header, prefixed};
 use super::repeat::Repeat;
