@@ -75,10 +75,10 @@ impl Header {
         let literal = Literal::parse(text).ok_or("its header is damaged")?;
         let get = |key: &str| literal.get(key).ok_or_else(|| format!("its header has no {key}"));
         let Literal::Bool(fortran) = *get("fortran_order")? else {
-            return Err("its header has no order".into());
+            return Err("its header's fortran_order is neither True nor False".into());
         };
         let Literal::List(shape) = get("shape")? else {
-            return Err("its header has no shape".into());
+            return Err("its header's shape is no list".into());
         };
         let shape = shape.iter().map(|axis| match axis {
             Literal::Number(length) => Ok(*length),

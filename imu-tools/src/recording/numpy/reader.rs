@@ -167,7 +167,10 @@ impl NumpyReader {
     ) -> Result<Records, Error> {
         let stride = candidate.stride;
         if stride == 0 || stride > LARGEST_PIECE {
-            return Err(Error::data(format!("{} has rows of {stride} bytes", self.name)));
+            return Err(Error::data(format!(
+                "{} has rows of {stride} bytes: those of 1 byte to a megabyte can be read",
+                self.name
+            )));
         }
         let mut own = match array.and_then(|array| array.member.as_ref()) {
             Some(member) => {

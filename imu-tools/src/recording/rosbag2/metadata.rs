@@ -43,7 +43,8 @@ impl Metadata {
         };
         if about.len() > LONGEST {
             return Err(Error::data(format!(
-                "{} is {} bytes long, which no {NAME} is",
+                "{} is {} bytes long, which no {NAME} is: move it away, and the files of its \
+                 folder are read in the order of their names",
                 path.display(),
                 about.len()
             )));
