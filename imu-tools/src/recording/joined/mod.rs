@@ -16,7 +16,8 @@ use super::{Block, Note, ReadOptions, Source, Stream, add_streams};
 use crate::error::Error;
 use part::Part;
 
-/// Whoever leaves a sensor for longer has switched it off: the limit of a [`timeline`](super::timeline), in ns.
+/// Whoever leaves a sensor for longer has switched it off: the limit of a
+/// [`timeline`](super::timeline), in ns.
 const LONGEST_GAP: i64 = 3_600_000_000_000;
 
 /// Several files being read as one recording.

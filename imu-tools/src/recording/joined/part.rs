@@ -7,8 +7,7 @@ use crate::recording::{Block, ReadOptions, Sample, Source, open, timeline};
 
 /// One of the files, of which the first block was read.
 pub struct Part {
-    /// Where it is.
-    pub path: PathBuf,
+    path: PathBuf,
     /// First samples of gyroscope and accelerometer.
     pub first: [Option<Sample>; 2],
     /// Their rates, where the first block shows them.
