@@ -8,6 +8,7 @@ extern crate std;
 pub mod allan;
 mod error;
 pub mod noise;
+mod resonator;
 mod scalar;
 pub mod trajectory;
 

@@ -65,12 +65,18 @@ pub trait Real:
     fn from_f64(x: f64) -> Self;
     /// The nearest value to the integer `n`.
     fn from_u32(n: u32) -> Self;
+    /// The nearest value to the integer `n`, of either sign.
+    fn from_i32(n: i32) -> Self;
     /// The same number in double precision (exact).
     fn to_f64(self) -> f64;
     /// |x|: clears the sign bit, so also of a NaN.
     fn abs(self) -> Self;
     /// Square root, correctly rounded; NaN below zero.
     fn sqrt(self) -> Self;
+    /// eˣ − 1 without cancellation near zero, within 1 unit in the last place (`libm`).
+    fn exp_m1(self) -> Self;
+    /// The nearest whole number, of two equally near ones the even one.
+    fn round_ties_even(self) -> Self;
     /// Sine and cosine of an angle in radians, within 1 unit in the last place (`libm`).
     fn sin_cos(self) -> (Self, Self);
     /// Neither infinite nor NaN.
@@ -82,7 +88,8 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($T:ident, $Total:ty, $limit:literal, $sqrt:path, $sincos:path) => {
+    ($T:ident, $Total:ty, $limit:literal, $sqrt:path, $expm1:path, $rint:path,
+     $sincos:path) => {
         impl Real for $T {
             type Total = $Total;
 
@@ -101,6 +108,10 @@ macro_rules! real {
                 n as $T
             }
             #[inline(always)]
+            fn from_i32(n: i32) -> Self {
+                n as $T
+            }
+            #[inline(always)]
             fn to_f64(self) -> f64 {
                 f64::from(self)
             }
@@ -111,6 +122,14 @@ macro_rules! real {
             #[inline]
             fn sqrt(self) -> Self {
                 $sqrt(self)
+            }
+            #[inline]
+            fn exp_m1(self) -> Self {
+                $expm1(self)
+            }
+            #[inline]
+            fn round_ties_even(self) -> Self {
+                $rint(self)
             }
             #[inline]
             fn sin_cos(self) -> (Self, Self) {
@@ -132,8 +151,8 @@ macro_rules! real {
     };
 }
 
-real!(f32, TwoStage, 1e12, libm::sqrtf, libm::sincosf);
-real!(f64, f64, 1e100, libm::sqrt, libm::sincos);
+real!(f32, TwoStage, 1e12, libm::sqrtf, libm::expm1f, libm::rintf, libm::sincosf);
+real!(f64, f64, 1e100, libm::sqrt, libm::expm1, libm::rint, libm::sincos);
 
 #[cfg(test)]
 mod tests {
@@ -145,6 +164,15 @@ mod tests {
             let x = f32::from_bits(bits);
             assert_eq!(Real::sqrt(x).to_bits(), x.sqrt().to_bits());
         }
+    }
+
+    #[test]
+    fn rounding_is_to_the_nearest_and_ties_to_even() {
+        for bits in (0..0x7f80_0000_u32).step_by(10_007) {
+            let x = f32::from_bits(bits);
+            assert_eq!(Real::round_ties_even(-x).to_bits(), (-x).round_ties_even().to_bits());
+        }
+        assert_eq!([0.5, 1.5, 2.5, -0.5].map(Real::round_ties_even), [0.0, 2.0, 2.0, 0.0]);
     }
 
     #[test]

@@ -1,12 +1,25 @@
 //! What a real sensor adds to the truth: error terms, composed at compile time.
 //!
-//! A *term* holds continuous-time parameters ([`White`], [`RandomWalk`], [`ConstantBias`]); a tuple
-//! of terms is a term. [`Term::prepare`] turns it, once, for a sampling interval, into a *stage*: a
+//! A *term* holds continuous-time parameters (the table below); a tuple of up to twelve terms is a
+//! term. [`Term::prepare`] turns it, once, for a sampling interval, into a *stage*: a
 //! small `Copy` value that turns truth into measurement with additions, multiplications and a
 //! normal number, without exponential or square root outside the normal's rare branches. Every term
 //! of every axis draws from its own stream ([`Channel`]), so that switching one never changes
 //! another's numbers. The same stream gives other numbers in `f32` than in `f64`; each the same on
 //! every target.
+//!
+//! | term | Allan variance |
+//! | --- | --- |
+//! | [`White`]: noise density N | N²/τ |
+//! | [`RandomWalk`]: bias random walk K | K²τ/3 |
+//! | [`Flicker`]: bias instability B | (2 ln 2/π)B², over the τ asked for |
+//! | [`GaussMarkov`]: a bias that forgets after a correlation time | a hump, 0.617 σ high, at 1.89 T |
+//! | [`IncrementQuantisation`]: Q, of a sensor that counts increments | 3Q²/τ² |
+//! | [`Quantisation`]: readings rounded to a grid of step q | q²dt/(12τ), when the reading moves |
+//! | [`RateRamp`]: a bias that grows by R a second | R²τ²/2 |
+//! | [`ConstantBias`], [`TurnOnBias`]: known, and drawn once a run | 0 |
+//! | [`TemperatureRamp`], [`WarmUp`]: a bias that follows the temperature | that of a ramp |
+//! | [`Sinusoid`], [`BandVibration`]: vibration of one frequency, or of a band | peaks at 0.37/f |
 //!
 //! ```
 //! use imu_core::noise::{RandomWalk, Sensor, Stage, ThreeAxis, White};
@@ -24,20 +37,43 @@
 //! # Ok::<(), imu_core::Error>(())
 //! ```
 
+mod band_vibration;
 mod compose;
 mod constant_bias;
+mod counter;
+mod flicker;
+mod gauss_markov;
+mod increment_quantisation;
 mod normal;
+mod nth;
+mod quantisation;
 mod random_walk;
+mod rate_ramp;
+mod sinusoid;
 mod stream;
+mod temperature_ramp;
+mod turn_on_bias;
+mod warm_up;
 mod white;
 mod xoshiro;
 mod ziggurat_tables;
 
+pub use band_vibration::{BandVibration, BandVibrationStage};
 pub use compose::ThreeAxis;
 pub use constant_bias::ConstantBias;
+pub use flicker::{Flicker, FlickerStage};
+pub use gauss_markov::{GaussMarkov, GaussMarkovStage, Start};
+pub use increment_quantisation::{IncrementQuantisation, IncrementQuantisationStage};
 pub use normal::Normal;
+pub use nth::Nth;
+pub use quantisation::{Quantisation, QuantisationStage};
 pub use random_walk::{RandomWalk, RandomWalkStage};
+pub use rate_ramp::{RateRamp, RateRampStage};
+pub use sinusoid::{Sinusoid, SinusoidStage};
 pub use stream::{Axis, Channel, Sensor, TermId};
+pub use temperature_ramp::TemperatureRamp;
+pub use turn_on_bias::TurnOnBias;
+pub use warm_up::{WarmUp, WarmUpStage};
 pub use white::{White, WhiteStage};
 pub use xoshiro::{Xoshiro128PlusPlus, Xoshiro256PlusPlus};
 
@@ -81,7 +117,7 @@ pub trait Stage<V> {
 }
 
 /// `value` if it is finite and not negative.
-fn density<T: Real>(name: &'static str, value: T) -> Result<T, Error> {
+pub(crate) fn density<T: Real>(name: &'static str, value: T) -> Result<T, Error> {
     if !value.is_finite() {
         Err(Error::NonFinite(name))
     } else if value < T::ZERO {
@@ -91,7 +127,20 @@ fn density<T: Real>(name: &'static str, value: T) -> Result<T, Error> {
     }
 }
 
-/// `dt` if it is finite and above zero.
-fn interval<T: Real>(dt: T) -> Result<T, Error> {
-    if density("dt", dt)? > T::ZERO { Ok(dt) } else { Err(Error::OutOfRange("dt")) }
+/// `value` if it is finite.
+pub(crate) fn finite<T: Real>(name: &'static str, value: T) -> Result<T, Error> {
+    if value.is_finite() { Ok(value) } else { Err(Error::NonFinite(name)) }
 }
+
+/// `value` if it is finite and above zero.
+pub(crate) fn positive<T: Real>(name: &'static str, value: T) -> Result<T, Error> {
+    if density(name, value)? > T::ZERO { Ok(value) } else { Err(Error::OutOfRange(name)) }
+}
+
+/// `dt` if it is finite and above zero.
+pub(crate) fn interval<T: Real>(dt: T) -> Result<T, Error> {
+    positive("dt", dt)
+}
+
+#[cfg(test)]
+mod terms_tests;

@@ -4,8 +4,8 @@
 //! sensor, never changes the numbers of any other. The numbers below are part of the format: a
 //! change of them changes every simulated recording, and is a breaking change.
 //!
-//! The key of a stream is `mix(mix(seed + γ) ^ (sensor·2³² + axis·2¹⁶ + term))`, with `mix`
-//! SplitMix64's output function, a bijection, and γ its increment: so two streams of one seed never share a key, and two
+//! The key of a stream is `mix(mix(seed + γ) ^ (nth·2⁴⁸ + sensor·2³² + axis·2¹⁶ + term))`, with
+//! nth 0 but for a second term of one kind ([`Nth`](super::Nth)), `mix` SplitMix64's output function, a bijection, and γ its increment: so two streams of one seed never share a key, and two
 //! seeds share one stream with a chance of 2⁻⁶⁴ a pair. The generator's state is then the first
 //! words of SplitMix64 started at the key.
 //!
@@ -59,6 +59,16 @@ impl TermId {
     pub const RANDOM_WALK: Self = Self(1);
     /// What a bandwidth limit remembers from before the first sample.
     pub const BANDWIDTH: Self = Self(2);
+    /// First-order Gauss-Markov bias ([`GaussMarkov`](super::GaussMarkov)).
+    pub const GAUSS_MARKOV: Self = Self(3);
+    /// Flicker, all its processes ([`Flicker`](super::Flicker)).
+    pub const FLICKER: Self = Self(4);
+    /// Quantisation of increments ([`IncrementQuantisation`](super::IncrementQuantisation)).
+    pub const QUANTISATION: Self = Self(5);
+    /// The bias of this run ([`TurnOnBias`](super::TurnOnBias)).
+    pub const TURN_ON_BIAS: Self = Self(6);
+    /// Vibration in a band ([`BandVibration`](super::BandVibration)).
+    pub const BAND_VIBRATION: Self = Self(7);
 }
 
 /// One axis of one sensor of one simulation: the place whose terms draw random numbers.
@@ -67,13 +77,21 @@ pub struct Channel {
     seed: u64,
     sensor: Sensor,
     axis: Axis,
+    nth: u16,
 }
 
 impl Channel {
     /// The channel of `axis` of `sensor` in the simulation with this `seed` (any number).
     #[must_use]
     pub const fn new(seed: u64, sensor: Sensor, axis: Axis) -> Self {
-        Self { seed, sensor, axis }
+        Self { seed, sensor, axis, nth: 0 }
+    }
+
+    /// The same place for one more term of a kind that it already has: see [`Nth`](super::Nth).
+    /// `0` is the first, as [`new`](Self::new) makes it.
+    #[must_use]
+    pub const fn nth(self, nth: u16) -> Self {
+        Self { nth, ..self }
     }
 
     /// The generator of a term on this channel, at its beginning.
@@ -83,7 +101,8 @@ impl Channel {
     }
 
     const fn key(&self, term: TermId) -> u64 {
-        let id = (self.sensor.0 as u64) << 32 | (self.axis as u64) << 16 | term.0 as u64;
+        let place = (self.sensor.0 as u64) << 32 | (self.axis as u64) << 16;
+        let id = (self.nth as u64) << 48 | place | term.0 as u64;
         mix(mix(self.seed.wrapping_add(GOLDEN)) ^ id)
     }
 }
@@ -103,6 +122,7 @@ mod tests {
                     for term in [0, 1, 2, 256, u16::MAX] {
                         let channel = Channel::new(seed, Sensor(sensor), axis);
                         assert!(seen.insert(channel.key(TermId(term))));
+                        assert!(seen.insert(channel.nth(1).key(TermId(term))));
                     }
                 }
             }

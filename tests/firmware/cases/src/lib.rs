@@ -17,6 +17,7 @@ mod ladder;
 mod noise;
 mod scalar;
 pub mod single;
+mod terms;
 mod trajectory;
 
 /// Where a case leaves its results.
@@ -62,6 +63,10 @@ pub const CASES: &[Case] = &[
     Case { name: "noise f64", run: noise::case::<f64> },
     Case { name: "noise steps f32", run: noise::absent_terms::<f32> },
     Case { name: "noise steps f64", run: noise::absent_terms::<f64> },
+    Case { name: "terms f32", run: terms::case::<f32> },
+    Case { name: "terms f64", run: terms::case::<f64> },
+    Case { name: "term steps f32", run: terms::cost::<f32> },
+    Case { name: "term steps f64", run: terms::cost::<f64> },
     Case { name: "trajectory f32", run: trajectory::case::<f32> },
     Case { name: "trajectory f64", run: trajectory::case::<f64> },
     Case { name: "Allan f32 1", run: ladder::bits::<f32, 1, 1> },

@@ -1,4 +1,5 @@
-//! `imu_core::noise`: normal numbers, terms and their compositions; what a term left out costs.
+//! `imu_core::noise`: normal numbers, the first three terms and their compositions; what a term left
+//! out costs. The other terms: `terms`.
 
 use crate::{Report, repeat};
 use core::hint::black_box;
@@ -11,7 +12,7 @@ const DRAWS: u32 = 8192;
 /// Steps that a count averages.
 const STEPS: u32 = 1024;
 
-/// The composition of all terms.
+/// The composition of the three.
 type Terms<T> = (White<T>, RandomWalk<T>, ConstantBias<T>);
 
 fn terms<T: Normal>() -> Terms<T> {
@@ -20,7 +21,7 @@ fn terms<T: Normal>() -> Terms<T> {
     (White { noise_density }, RandomWalk { random_walk }, ConstantBias { constant_bias })
 }
 
-fn channel() -> Channel {
+pub(crate) fn channel() -> Channel {
     Channel::new(black_box(7), Sensor::ACCELEROMETER, Axis::Y)
 }
 
@@ -63,7 +64,11 @@ pub fn case<T: Normal>(report: &mut dyn Report) {
 }
 
 /// Steps one by one, then a block.
-fn stage<T: Normal, S: Stage<T>, E>(report: &mut dyn Report, stage: Result<S, E>, truth: T) {
+pub(crate) fn stage<T: Normal, S: Stage<T>, E>(
+    report: &mut dyn Report,
+    stage: Result<S, E>,
+    truth: T,
+) {
     report.flag(stage.is_ok());
     if let Ok(mut stage) = stage {
         for _ in 0..64 {
@@ -110,7 +115,7 @@ pub fn absent_terms<T: Normal>(report: &mut dyn Report) {
     composition(report, "white and walk and constant", (white, walk, constant), dt);
 }
 
-fn composition<T: Normal, P: Term<T>>(
+pub(crate) fn composition<T: Normal, P: Term<T>>(
     report: &mut dyn Report,
     what: &'static str,
     terms: P,

@@ -1,4 +1,4 @@
-//! `imu_core::Real`: square root, sine and cosine, absolute value, conversions.
+//! `imu_core::Real`: square root, exponential, sine and cosine, rounding, absolute value, conversions.
 
 use crate::inputs::Integers;
 use crate::{Report, repeat};
@@ -40,6 +40,8 @@ fn operations<T: Real>(report: &mut dyn Report, x: T) {
     let (sin, cos) = Real::sin_cos(x);
     report.real(sin);
     report.real(cos);
+    report.real(Real::exp_m1(x));
+    report.real(Real::round_ties_even(x));
     report.real(T::from_f64(x.to_f64() * 1.1));
     report.flag(Real::is_finite(x));
 }
