@@ -1,5 +1,6 @@
 //! Published data and helpers that the cross-crate tests share.
 
+pub mod allan_bands;
 pub mod bags;
 pub mod command;
 pub mod databases;
