@@ -10,6 +10,7 @@ mod error;
 pub mod noise;
 mod resonator;
 mod scalar;
+pub mod sensor;
 pub mod trajectory;
 
 pub use error::Error;

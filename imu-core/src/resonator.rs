@@ -1,4 +1,5 @@
-//! A damped oscillator over one sampling interval, exactly.
+//! A damped oscillator over one sampling interval, exactly: what band vibration and the two-pole
+//! low-pass share.
 //!
 //! ẍ + 2ζω₀ẋ + ω₀²x = 0 with u = ẋ/ω₀ moves (x, u) by Φ(dt) = exp(A dt), A = ω₀[0 1; −1 −2ζ]. For
 //! ζ < 1, with ω_d = ω₀√(1 − ζ²), E = exp(−ζω₀dt), C = cos ω_d dt, S = (ω₀/ω_d) sin ω_d dt:

@@ -16,6 +16,7 @@ pub mod inputs;
 mod ladder;
 mod noise;
 mod scalar;
+mod sensor;
 pub mod single;
 mod terms;
 mod trajectory;
@@ -67,6 +68,10 @@ pub const CASES: &[Case] = &[
     Case { name: "terms f64", run: terms::case::<f64> },
     Case { name: "term steps f32", run: terms::cost::<f32> },
     Case { name: "term steps f64", run: terms::cost::<f64> },
+    Case { name: "sensor f32", run: sensor::case::<f32> },
+    Case { name: "sensor f64", run: sensor::case::<f64> },
+    Case { name: "sensor steps f32", run: sensor::cost::<f32> },
+    Case { name: "sensor steps f64", run: sensor::cost::<f64> },
     Case { name: "trajectory f32", run: trajectory::case::<f32> },
     Case { name: "trajectory f64", run: trajectory::case::<f64> },
     Case { name: "Allan f32 1", run: ladder::bits::<f32, 1, 1> },
