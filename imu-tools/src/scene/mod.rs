@@ -21,7 +21,6 @@
 mod clock;
 mod duration;
 mod file;
-mod low_pass;
 mod simulator;
 mod truth;
 

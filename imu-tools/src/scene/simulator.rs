@@ -9,10 +9,10 @@ use imu_core::noise::{
     Axis, Channel, ConstantBias, RandomWalk, RandomWalkStage, Sensor, Stage, Term, White,
     WhiteStage,
 };
+use imu_core::sensor::{OnePole, OnePoleStage};
 use imu_core::trajectory::Motion;
 
 use super::clock::Ticks;
-use super::low_pass::LowPass;
 use super::{Path, Scene, SensorErrors};
 use crate::error::Error;
 use crate::recording::{BLOCK_SAMPLES, Block, Note, Sample, Source, Stream};
@@ -159,7 +159,7 @@ struct Chain {
     white: Option<WhiteStage<f64>>,
     walk: Option<RandomWalkStage<f64>>,
     constant: Option<ConstantBias<f64>>,
-    low_pass: Option<LowPass>,
+    low_pass: Option<OnePoleStage<f64>>,
 }
 
 impl Chain {
@@ -183,10 +183,14 @@ impl Chain {
             walk: present(RandomWalk { random_walk }, random_walk, dt, channel).map_err(cannot)?,
             constant: present(ConstantBias { constant_bias }, constant_bias, dt, channel)
                 .map_err(cannot)?,
-            low_pass: errors.lowpass_hz.map(|hz| {
-                let white_sd = noise_density / dt.sqrt();
-                LowPass::settled(hz, dt, truth + constant_bias, white_sd, channel)
-            }),
+            low_pass: errors
+                .lowpass_hz
+                .map(|cutoff| {
+                    OnePole { cutoff, start: truth + constant_bias, noise_density }
+                        .prepare(dt, channel)
+                })
+                .transpose()
+                .map_err(cannot)?,
         })
     }
 
