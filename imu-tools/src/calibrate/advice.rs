@@ -2,7 +2,7 @@
 
 use imu_core::allan::Parameter;
 
-use super::{SensorKind, SensorNoise, Stretch};
+use super::{SensorNoise, Stretch};
 use crate::recording::Summary;
 use crate::scene::display_duration;
 
@@ -52,10 +52,7 @@ fn of_rest(to: &mut Vec<String>, sensor: &SensorNoise, keep_all: bool) {
         ));
     }
     if let Some(slope) = sensor.ramp {
-        let unit = match sensor.kind {
-            SensorKind::Gyroscope => "rad/s",
-            SensorKind::Accelerometer => "m/s²",
-        };
+        let unit = sensor.kind.unit();
         let hourly = slope.map(|s| format!("{:+.2e}", s * 3600.0)).join(", ");
         let what = if keep_all {
             "kept, because --keep-all is given, and read as random walk: K is too large"

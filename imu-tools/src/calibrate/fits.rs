@@ -110,6 +110,7 @@ pub(super) fn noise(
         warm_up_s: (drift.warm_up > 0).then_some(drift.warm_up as f64 * tau0_s),
         ramp: drift.ramp.map(|ramp| ramp.slope),
         checks: Checks::default(),
+        signal: Vec::new(),
         deviation,
     }
 }

@@ -21,6 +21,7 @@ pub mod batch;
 pub mod block_means;
 mod checks;
 mod drift;
+mod envelope;
 mod fits;
 pub mod five_terms;
 mod gravity;
@@ -31,11 +32,14 @@ mod refusal;
 mod sensor;
 pub mod slope;
 mod stillness;
+mod taken;
 mod temperature;
 mod usual;
+pub mod verdict;
 mod window;
 
 pub use checks::Checks;
+pub use envelope::Column;
 pub use temperature::TemperatureRange;
 
 use imu_core::allan::{AllanLadder, Contradiction, Octave, Parameter};
@@ -69,6 +73,8 @@ pub struct Options {
     pub estimator: Estimator,
     /// Leave nothing out: neither what was handled nor the warm-up, and read no K past a ramp.
     pub keep_all: bool,
+    /// Keep the signal in outline ([`SensorNoise::signal`]), for a picture of it.
+    pub keep_signal: bool,
 }
 
 /// How N and K are estimated.
@@ -120,6 +126,15 @@ impl SensorKind {
             Self::Accelerometer => "accelerometer",
         }
     }
+
+    /// The unit of its readings.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Gyroscope => "rad/s",
+            Self::Accelerometer => "m/s²",
+        }
+    }
 }
 
 /// The noise of one sensor.
@@ -158,6 +173,8 @@ pub struct SensorNoise {
     pub ramp: Option<[f64; 3]>,
     /// What the values themselves say of the sensor and its driver.
     pub checks: Checks,
+    /// The signal in outline; empty unless [`Options::keep_signal`].
+    pub signal: Vec<Column>,
     /// The variance at every τ that has one, shortest first.
     pub deviation: Vec<Deviation>,
 }

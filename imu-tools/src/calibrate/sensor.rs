@@ -1,10 +1,10 @@
 //! One sensor's way from samples to noise: stamps to a grid, values into a ladder, a fit.
 
-use super::block_means::BlockMeans;
 use super::checks::Checker;
-use super::limits::Limits;
+use super::envelope::Envelope;
 use super::stillness::Stillness;
-use super::{Estimator, Options, SensorKind, SensorLadder, SensorNoise, Stretch, fits};
+use super::taken::Taken;
+use super::{Estimator, Options, SensorKind, SensorNoise, Stretch, fits};
 use crate::recording::{Event, Sample, Timeline};
 
 /// Takes the samples of one sensor as they come.
@@ -12,50 +12,54 @@ pub(super) struct Pipeline {
     kind: SensorKind,
     options: Options,
     timeline: Timeline,
-    checker: Checker,
-    stillness: Stillness,
-    taken: Taken,
+    seen: Seen,
     /// First and latest stamp, and how many.
     first_ns: Option<i64>,
     latest_ns: i64,
     samples: u64,
 }
 
-/// What becomes of values on the grid.
-struct Taken {
-    kind: SensorKind,
-    /// Known when the first values of a record show what is normal.
-    limits: Option<Limits>,
-    ladder: SensorLadder,
-    /// What the ladders of the records before this one gathered.
-    earlier: Option<SensorLadder>,
-    means: BlockMeans,
-    /// Σ of values less the reference of this record, and how many.
-    sum: [f64; 3],
-    count: u64,
-    /// Mean and count of the records before this one; a record without a sample has no count.
-    records: Vec<([f64; 3], u64)>,
+/// What looks at values on the grid, one after the other.
+struct Seen {
+    checker: Checker,
+    envelope: Option<Envelope>,
+    stillness: Stillness,
+    taken: Taken,
+}
+
+impl Seen {
+    fn take(&mut self, event: Event<'_>, period_s: f64) {
+        let Self { checker, envelope, stillness, taken } = self;
+        let limits = taken.limits(event);
+        if let Event::Values(values) = event {
+            checker.take(values);
+        }
+        if let Some(envelope) = envelope {
+            envelope.take(event);
+        }
+        stillness.take(event, period_s, limits, &mut |event| taken.take(event));
+    }
+
+    fn next_record(&mut self) {
+        let Self { stillness, taken, .. } = self;
+        stillness.next_record(&mut |event| taken.take(event));
+        taken.close_record();
+    }
 }
 
 impl Pipeline {
     pub(super) fn new(kind: SensorKind, options: &Options) -> Self {
-        let taken = Taken {
-            kind,
-            limits: None,
-            ladder: SensorLadder::new(),
-            earlier: None,
-            means: BlockMeans::new(),
-            sum: [0.0; 3],
-            count: 0,
-            records: Vec::new(),
+        let seen = Seen {
+            checker: Checker::new(),
+            envelope: options.keep_signal.then(Envelope::new),
+            stillness: Stillness::new(options.keep_all),
+            taken: Taken::new(kind),
         };
         Self {
             kind,
             options: *options,
             timeline: Timeline::new(),
-            checker: Checker::new(),
-            stillness: Stillness::new(options.keep_all),
-            taken,
+            seen,
             first_ns: None,
             latest_ns: i64::MIN,
             samples: 0,
@@ -69,14 +73,7 @@ impl Pipeline {
             self.samples += samples.len() as u64;
         }
         let period_s = self.rough_period_s();
-        let Self { timeline, checker, stillness, taken, .. } = self;
-        timeline.push(samples, |event| {
-            let limits = taken.limits(event);
-            if let Event::Values(values) = event {
-                checker.take(values);
-            }
-            stillness.take(event, period_s, limits, &mut |event| taken.take(event));
-        });
+        self.timeline.push(samples, |event| self.seen.take(event, period_s));
     }
 
     /// Time between samples, near enough to say how many make a second.
@@ -88,16 +85,8 @@ impl Pipeline {
     /// Another record follows: no difference spans the break, all sums add.
     pub(super) fn next_record(&mut self) {
         let period_s = self.rough_period_s();
-        let Self { timeline, checker, stillness, taken, .. } = self;
-        timeline.next_record(|event| {
-            let limits = taken.limits(event);
-            if let Event::Values(values) = event {
-                checker.take(values);
-            }
-            stillness.take(event, period_s, limits, &mut |event| taken.take(event));
-        });
-        stillness.next_record(&mut |event| taken.take(event));
-        taken.close_record();
+        self.timeline.next_record(|event| self.seen.take(event, period_s));
+        self.seen.next_record();
         self.first_ns = None;
         self.latest_ns = i64::MIN;
         self.samples = 0;
@@ -106,25 +95,13 @@ impl Pipeline {
     /// The noise, of a topic yet to be named, or nothing if there was not a sample.
     pub(super) fn finish(self) -> Option<SensorNoise> {
         let period_s = self.rough_period_s();
-        let Self { kind, options, timeline, mut checker, mut stillness, mut taken, .. } = self;
-        let stamps = timeline.finish(|event| {
-            let limits = taken.limits(event);
-            if let Event::Values(values) = event {
-                checker.take(values);
-            }
-            stillness.take(event, period_s, limits, &mut |event| taken.take(event));
-        });
+        let Self { kind, options, timeline, mut seen, .. } = self;
+        let stamps = timeline.finish(|event| seen.take(event, period_s));
+        let Seen { checker, envelope, stillness, mut taken } = seen;
         let disturbed = stillness.finish(&mut |event| taken.take(event));
         taken.close_record();
+        let mean = taken.mean();
         let ladder = taken.earlier?;
-        let count = taken.records.iter().map(|(_, count)| count).sum::<u64>().max(1) as f64;
-        let mut mean = [0.0; 3];
-        for (of_record, samples) in &taken.records {
-            let share = *samples as f64 / count;
-            for (mean, of_record) in mean.iter_mut().zip(of_record) {
-                *mean += share * of_record;
-            }
-        }
         let tau0_s = if stamps.rate_hz > 0.0 { 1.0 / stamps.rate_hz } else { 0.0 };
         let seconds = |samples: u64| samples as f64 * tau0_s;
         let means = &taken.means;
@@ -134,6 +111,7 @@ impl Pipeline {
             .map(|s| Stretch { from_s: seconds(s.from), to_s: seconds(s.to) })
             .collect();
         noise.checks = checker.finish();
+        noise.signal = envelope.map_or_else(Vec::new, |envelope| envelope.finish(tau0_s));
         noise.record_means = taken
             .records
             .iter()
@@ -147,79 +125,5 @@ impl Pipeline {
             Estimator::Slope => noise.by_slope(),
         }
         Some(noise)
-    }
-}
-
-impl Taken {
-    /// Puts the record at hand beside those before it; the next one has limits of its own.
-    fn close_record(&mut self) {
-        let limits = self.limits.take();
-        if limits.is_some() {
-            let ladder = std::mem::take(&mut self.ladder);
-            match &mut self.earlier {
-                Some(earlier) => earlier.pool(&ladder),
-                None => self.earlier = Some(ladder),
-            }
-        }
-        let count = std::mem::take(&mut self.count);
-        let mut mean = limits.map_or([0.0; 3], |limits| limits.reference);
-        for (mean, sum) in mean.iter_mut().zip(std::mem::take(&mut self.sum)) {
-            *mean += sum / count.max(1) as f64;
-        }
-        self.records.push((mean, count));
-    }
-
-    /// The limits, learnt from the first values.
-    fn limits(&mut self, event: Event<'_>) -> Option<Limits> {
-        if self.limits.is_none()
-            && let Event::Values(values) = event
-        {
-            let limits = Limits::of(self.kind, values);
-            self.ladder =
-                SensorLadder::with_reference(limits.reference, limits.bound).unwrap_or_default();
-            self.means.next_record(limits.reference);
-            self.limits = Some(limits);
-        }
-        self.limits
-    }
-
-    fn take(&mut self, event: Event<'_>) {
-        let Some(limits) = self.limits else { return };
-        match event {
-            Event::Values(values) => {
-                self.ladder.extend(values);
-                if limits.hold_all(values) {
-                    self.keep(values, &limits);
-                } else {
-                    for value in values {
-                        if limits.hold(value) {
-                            self.keep(std::slice::from_ref(value), &limits);
-                        } else {
-                            self.means.missing(1);
-                        }
-                    }
-                }
-            }
-            Event::Missing(n) => {
-                self.ladder.missing(n);
-                self.means.missing(n);
-            }
-            Event::Restart => {
-                self.ladder.restart();
-                self.means.restart();
-            }
-        }
-    }
-
-    /// Takes values within the limits into the means.
-    #[inline]
-    fn keep(&mut self, values: &[[f64; 3]], limits: &Limits) {
-        self.means.extend(values);
-        for value in values {
-            for ((sum, x), offset) in self.sum.iter_mut().zip(value).zip(limits.reference) {
-                *sum += x - offset;
-            }
-        }
-        self.count += values.len() as u64;
     }
 }

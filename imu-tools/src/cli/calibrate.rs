@@ -9,14 +9,16 @@ use super::reading::{Opened, Reading};
 use crate::calibrate::{Calibration, Estimator, Options, calibrate};
 use crate::error::Error;
 use crate::output::Output;
-use crate::report;
+use crate::report::{self, formats::Form};
 
 const EXAMPLES: &str = "\
 Examples:
   imu calibrate still.bag
       a table: angle and velocity random walk N, random walk of the bias K, intervals, units
   imu calibrate still.bag -o out
-      also out/imu.yaml (Kalibr's keys) and out/allan.csv
+      also out/report.html, plots (allan.svg, allan.png), imu.yaml (Kalibr's keys) and allan.csv
+  imu calibrate still.bag --format vins
+      the lines for VINS-Mono's configuration in the place of the table
   imu calibrate log.csv --columns t,ax,ay,az,gx,gy,gz --gyro-unit deg/s --accel-unit g --json
   imu calibrate still.bag --from 120 --to 14000
       without the time when a hand was still on the sensor
@@ -37,7 +39,7 @@ pub(super) struct Calibrate {
     /// ends, and pooled where they are of other days or sensors
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Write imu.yaml and allan.csv into this folder
+    /// Write report.html, allan.svg, allan.png, imu.yaml and allan.csv into this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Print one JSON object instead of a table
@@ -55,8 +57,41 @@ pub(super) struct Calibrate {
     /// How to estimate N and K
     #[arg(long, value_enum, default_value_t = EstimatorName::Octaves)]
     estimator: EstimatorName,
+    /// Form of imu.yaml, or without -o of what is printed
+    #[arg(long, value_enum, value_name = "NAME", conflicts_with = "json")]
+    format: Option<FormatName>,
     #[command(flatten)]
     reading: Reading,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum FormatName {
+    /// Kalibr's imu.yaml
+    Kalibr,
+    /// What imu_utils writes
+    #[value(name = "imu_utils")]
+    ImuUtils,
+    /// VINS-Mono and VINS-Fusion
+    Vins,
+    /// OpenVINS' kalibr_imu_chain.yaml
+    Openvins,
+    /// ORB-SLAM3's settings
+    Orbslam3,
+    /// Covariances of sensor_msgs/Imu
+    RosCovariance,
+}
+
+impl FormatName {
+    fn form(self) -> Form {
+        match self {
+            Self::Kalibr => Form::Kalibr,
+            Self::ImuUtils => Form::ImuUtils,
+            Self::Vins => Form::Vins,
+            Self::Openvins => Form::OpenVins,
+            Self::Orbslam3 => Form::OrbSlam3,
+            Self::RosCovariance => Form::RosCovariance,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -79,7 +114,7 @@ impl Calibrate {
         calibration.paths = names;
         bar.finish_and_clear();
         if let Some(folder) = &self.output {
-            write_into(folder, &calibration)?;
+            write_into(folder, &calibration, self.format.map_or(Form::Kalibr, FormatName::form))?;
         }
         if self.json {
             return super::print(&format!("{:#}\n", report::json::calibration(&calibration)));
@@ -90,7 +125,10 @@ impl Calibrate {
         for warning in &calibration.warnings {
             super::say(&format!("imu: warning: {warning}"));
         }
-        super::print(&report::table::calibration(&calibration))
+        match self.format.filter(|_| self.output.is_none()) {
+            Some(format) => super::print(&format.form().write(&calibration)),
+            None => super::print(&report::table::calibration(&calibration)),
+        }
     }
 
     fn options(&self) -> Result<Options, Error> {
@@ -111,6 +149,7 @@ impl Calibrate {
             to_s: self.to,
             unit_is_given: self.reading.accel_unit_is_given(),
             keep_all: self.keep_all,
+            keep_signal: self.output.is_some(),
             estimator: match self.estimator {
                 EstimatorName::Octaves => Estimator::Octaves,
                 EstimatorName::Ml => Estimator::MaximumLikelihood,
@@ -120,19 +159,28 @@ impl Calibrate {
     }
 }
 
-/// Writes `imu.yaml` and `allan.csv`, whole or not at all, into a folder that is made if need be.
-pub(super) fn write_into(folder: &Path, calibration: &Calibration) -> Result<(), Error> {
+/// Writes the report, its plots, `imu.yaml` and `allan.csv`, all or none of them, into a folder that is
+/// made if need be.
+pub(super) fn write_into(
+    folder: &Path,
+    calibration: &Calibration,
+    form: Form,
+) -> Result<(), Error> {
     std::fs::create_dir_all(folder).map_err(|e| Error::io("make the folder", folder, e))?;
+    let allan = report::plot::allan(calibration);
     let files = [
-        ("imu.yaml", report::yaml::kalibr(calibration)),
-        ("allan.csv", report::csv::deviations(calibration)),
+        ("imu.yaml", form.write(calibration).into_bytes()),
+        ("allan.csv", report::csv::deviations(calibration).into_bytes()),
+        ("allan.svg", allan.svg().into_bytes()),
+        ("allan.png", allan.png()?),
+        ("report.html", report::html::page(calibration).into_bytes()),
     ];
     let mut written = Vec::new();
-    for (name, text) in files {
+    for (name, bytes) in files {
         let mut output = Output::create(&folder.join(name))?;
-        output.write(text.as_bytes())?;
+        output.write(&bytes)?;
         written.push(output);
     }
-    // Both are complete before either takes its place.
+    // All are complete before any takes its place.
     written.into_iter().try_for_each(Output::finish)
 }

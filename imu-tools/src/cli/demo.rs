@@ -9,13 +9,14 @@ use super::progress;
 use crate::calibrate::{Options, calibrate};
 use crate::error::Error;
 use crate::report::demo::{Level, table};
+use crate::report::formats::Form;
 use crate::scene::{Preset, Simulator};
 
 /// Simulate three noise levels for four hours each, calibrate them, and compare with the truth.
 ///
 /// No file in between: 4 h at 200 Hz of each level go straight from the simulator into the
 /// calibration. Beside the estimates stands what two classic tools print for the same data. Each
-/// level's imu.yaml and allan.csv go to imu-demo/.
+/// level's report.html, plots, imu.yaml and allan.csv go to imu-demo/.
 #[derive(Args, Debug)]
 pub(super) struct Demo {
     /// Seed of the random numbers
@@ -33,14 +34,16 @@ impl Demo {
             let simulator = Simulator::new(&scene)?;
             let bar = progress::bar(simulator.samples_left(), preset.name());
             let name = format!("imu simulate {} --seed {}", preset.name(), self.seed);
-            let options = Options::default();
+            let options = Options { keep_signal: true, ..Options::default() };
             let calibration =
                 calibrate(Box::new(simulator), &name, &options, |at| bar.set_position(at.samples))?;
             bar.finish_and_clear();
-            write_into(&folder.join(preset.name()), &calibration)?;
+            write_into(&folder.join(preset.name()), &calibration, Form::Kalibr)?;
             levels.push(Level { name: preset.name(), scene, calibration });
         }
         super::print(&table(&levels))?;
-        super::print("\nimu.yaml and allan.csv of each level are in imu-demo/.\n")
+        super::print(
+            "\nreport.html, plots, imu.yaml and allan.csv of each level are in imu-demo/.\n",
+        )
     }
 }

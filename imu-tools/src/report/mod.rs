@@ -1,12 +1,16 @@
 //! Results for people and for machines: one form a file, no decisions in any of them.
 //!
-//! [`table`] for a terminal, [`json`] for programs, [`yaml`] for Kalibr, [`csv`] for plots, [`demo`]
+//! [`table`] for a terminal, [`json`] for programs, [`yaml`] for Kalibr and [`formats`] for other
+//! filters, [`csv`] for plots of one's own, [`plot`] for pictures, [`html`] for the report, [`demo`]
 //! for the comparison of several with the truth. All write a [`Calibration`](crate::calibrate::Calibration) into text.
 
 pub mod csv;
 pub mod demo;
+pub mod formats;
+pub mod html;
 pub mod info;
 pub mod json;
+pub mod plot;
 pub mod table;
 mod units;
 pub mod yaml;

@@ -1,0 +1,122 @@
+//! What becomes of the readings of a sensor at rest: variances, means of blocks, and the mean.
+
+use super::block_means::BlockMeans;
+use super::limits::Limits;
+use super::{SensorKind, SensorLadder};
+use crate::recording::Event;
+
+/// What becomes of values on the grid.
+pub(super) struct Taken {
+    kind: SensorKind,
+    /// Known when the first values of a record show what is normal.
+    limits: Option<Limits>,
+    ladder: SensorLadder,
+    /// What the ladders of the records before this one gathered.
+    pub(super) earlier: Option<SensorLadder>,
+    pub(super) means: BlockMeans,
+    /// Σ of values less the reference of this record, and how many.
+    sum: [f64; 3],
+    count: u64,
+    /// Mean and count of the records before this one; a record without a sample has no count.
+    pub(super) records: Vec<([f64; 3], u64)>,
+}
+
+impl Taken {
+    pub(super) fn new(kind: SensorKind) -> Self {
+        Self {
+            kind,
+            limits: None,
+            ladder: SensorLadder::new(),
+            earlier: None,
+            means: BlockMeans::new(),
+            sum: [0.0; 3],
+            count: 0,
+            records: Vec::new(),
+        }
+    }
+
+    /// The mean of all records.
+    pub(super) fn mean(&self) -> [f64; 3] {
+        let count = self.records.iter().map(|(_, count)| count).sum::<u64>().max(1) as f64;
+        let mut mean = [0.0; 3];
+        for (of_record, samples) in &self.records {
+            let share = *samples as f64 / count;
+            for (mean, of_record) in mean.iter_mut().zip(of_record) {
+                *mean += share * of_record;
+            }
+        }
+        mean
+    }
+
+    /// Puts the record at hand beside those before it; the next one has limits of its own.
+    pub(super) fn close_record(&mut self) {
+        let limits = self.limits.take();
+        if limits.is_some() {
+            let ladder = std::mem::take(&mut self.ladder);
+            match &mut self.earlier {
+                Some(earlier) => earlier.pool(&ladder),
+                None => self.earlier = Some(ladder),
+            }
+        }
+        let count = std::mem::take(&mut self.count);
+        let mut mean = limits.map_or([0.0; 3], |limits| limits.reference);
+        for (mean, sum) in mean.iter_mut().zip(std::mem::take(&mut self.sum)) {
+            *mean += sum / count.max(1) as f64;
+        }
+        self.records.push((mean, count));
+    }
+
+    /// The limits, learnt from the first values.
+    pub(super) fn limits(&mut self, event: Event<'_>) -> Option<Limits> {
+        if self.limits.is_none()
+            && let Event::Values(values) = event
+        {
+            let limits = Limits::of(self.kind, values);
+            self.ladder =
+                SensorLadder::with_reference(limits.reference, limits.bound).unwrap_or_default();
+            self.means.next_record(limits.reference);
+            self.limits = Some(limits);
+        }
+        self.limits
+    }
+
+    pub(super) fn take(&mut self, event: Event<'_>) {
+        let Some(limits) = self.limits else { return };
+        match event {
+            Event::Values(values) => {
+                self.ladder.extend(values);
+                if limits.hold_all(values) {
+                    self.keep(values, &limits);
+                } else {
+                    for value in values {
+                        if limits.hold(value) {
+                            self.keep(std::slice::from_ref(value), &limits);
+                        } else {
+                            self.means.missing(1);
+                        }
+                    }
+                }
+            }
+            Event::Missing(n) => {
+                self.ladder.missing(n);
+                self.means.missing(n);
+            }
+            Event::Restart => {
+                self.ladder.restart();
+                self.means.restart();
+            }
+        }
+    }
+
+    /// Takes values within the limits into the means.
+    #[inline]
+    fn keep(&mut self, values: &[[f64; 3]], limits: &Limits) {
+        self.means.extend(values);
+        for value in values {
+            for ((sum, x), offset) in self.sum.iter_mut().zip(value).zip(limits.reference) {
+                *sum += x - offset;
+            }
+        }
+        self.count += values.len() as u64;
+    }
+}

@@ -1,0 +1,247 @@
+//! Noise parameters as the programs want them that use them: each in the unit that its program takes.
+//!
+//! A parameter that the record cannot show stands there by its upper 90 % bound, and a comment says so.
+
+use std::fmt::Write as _;
+
+use imu_core::allan::Parameter;
+
+use crate::calibrate::{Calibration, SensorKind, SensorNoise};
+
+/// A program's form of the parameters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Form {
+    /// `imu.yaml` of Kalibr.
+    #[default]
+    Kalibr,
+    /// What imu_utils writes.
+    ImuUtils,
+    /// VINS-Mono and VINS-Fusion.
+    Vins,
+    /// `kalibr_imu_chain.yaml` of OpenVINS.
+    OpenVins,
+    /// ORB-SLAM3.
+    OrbSlam3,
+    /// Covariances of `sensor_msgs/Imu`.
+    RosCovariance,
+}
+
+impl Form {
+    /// The parameters in this form.
+    #[must_use]
+    pub fn write(self, calibration: &Calibration) -> String {
+        let sensors = Sensors {
+            gyroscope: calibration.gyroscope.as_ref(),
+            accelerometer: calibration.accelerometer.as_ref(),
+        };
+        match self {
+            Self::Kalibr => super::yaml::kalibr(calibration),
+            Self::ImuUtils => sensors.imu_utils(),
+            Self::Vins => sensors.vins(),
+            Self::OpenVins => sensors.open_vins(),
+            Self::OrbSlam3 => sensors.orb_slam3(),
+            Self::RosCovariance => sensors.ros_covariance(),
+        }
+    }
+}
+
+struct Sensors<'a> {
+    gyroscope: Option<&'a SensorNoise>,
+    accelerometer: Option<&'a SensorNoise>,
+}
+
+/// A value, or its upper bound; what to remark about it.
+fn value(parameter: Parameter) -> (f64, &'static str) {
+    match parameter {
+        Parameter::Observable { value, .. } => (value, ""),
+        Parameter::NotObservable { upper90, .. } if upper90.is_finite() => {
+            (upper90, "  NOT OBSERVABLE: its upper 90 % bound")
+        }
+        Parameter::NotObservable { .. } => (0.0, "  NOTHING IS KNOWN of it: put a value here"),
+    }
+}
+
+/// N and K of all axes.
+fn noise(sensor: &SensorNoise) -> [(f64, &'static str); 2] {
+    [value(sensor.pooled.noise_density), value(sensor.pooled.random_walk)]
+}
+
+impl Sensors<'_> {
+    /// Accelerometer, then gyroscope, those that are there.
+    fn each(&self) -> impl Iterator<Item = &SensorNoise> {
+        [self.accelerometer, self.gyroscope].into_iter().flatten()
+    }
+
+    fn rate_hz(&self) -> f64 {
+        self.gyroscope.or(self.accelerometer).map_or(0.0, |sensor| sensor.stamps.rate_hz)
+    }
+
+    fn vins(&self) -> String {
+        let mut text = String::from(
+            "# For VINS-Mono and VINS-Fusion, which take these as standard deviations of one sample:\n\
+             # their covariance grows by (value x dt)^2 a sample, so N is here N sqrt(rate) and K is\n\
+             # K sqrt(rate). They hold for this rate only.\n",
+        );
+        let _ = writeln!(text, "# rate: {:.3} Hz", self.rate_hz());
+        for sensor in self.each() {
+            let (key, unit) = match sensor.kind {
+                SensorKind::Gyroscope => ("gyr", "rad/s"),
+                SensorKind::Accelerometer => ("acc", "m/s^2"),
+            };
+            let root = sensor.stamps.rate_hz.sqrt();
+            let [(n, n_remark), (k, k_remark)] = noise(sensor);
+            let _ = writeln!(text, "{key}_n: {:.6e}  # {unit} a sample{n_remark}", n * root);
+            let _ = writeln!(
+                text,
+                "{key}_w: {:.6e}  # {unit}/s a sample: the random walk of the bias{k_remark}",
+                k * root
+            );
+        }
+        text
+    }
+
+    fn open_vins(&self) -> String {
+        let mut text = String::from(
+            "%YAML:1.0\n# For OpenVINS (kalibr_imu_chain.yaml): continuous-time densities. \
+             T_i_b and time_offset are not\n# known from a record at rest.\nimu0:\n  T_i_b:\n",
+        );
+        for row in 0..4 {
+            let cells = (0..4).map(|column| if row == column { "1.0" } else { "0.0" });
+            let _ = writeln!(text, "  - [{}]", cells.collect::<Vec<_>>().join(", "));
+        }
+        for sensor in self.each() {
+            let name = sensor.kind.name();
+            let (n_unit, k_unit) = densities(sensor.kind);
+            let [(n, n_remark), (k, k_remark)] = noise(sensor);
+            let _ = writeln!(text, "  {name}_noise_density: {n:.6e}  # {n_unit}{n_remark}");
+            let _ = writeln!(text, "  {name}_random_walk: {k:.6e}  # {k_unit}{k_remark}");
+        }
+        let _ = writeln!(
+            text,
+            "  rostopic: /imu0\n  time_offset: 0.0\n  update_rate: {:.6}",
+            self.rate_hz()
+        );
+        text
+    }
+
+    fn orb_slam3(&self) -> String {
+        let mut text = String::from(
+            "# For ORB-SLAM3: continuous-time densities; it multiplies by sqrt(IMU.Frequency) itself.\n",
+        );
+        for sensor in self.each() {
+            let (noise_key, walk_key) = match sensor.kind {
+                SensorKind::Gyroscope => ("IMU.NoiseGyro", "IMU.GyroWalk"),
+                SensorKind::Accelerometer => ("IMU.NoiseAcc", "IMU.AccWalk"),
+            };
+            let (n_unit, k_unit) = densities(sensor.kind);
+            let [(n, n_remark), (k, k_remark)] = noise(sensor);
+            let _ = writeln!(text, "{noise_key}: {n:.6e}  # {n_unit}{n_remark}");
+            let _ = writeln!(text, "{walk_key}: {k:.6e}  # {k_unit}{k_remark}");
+        }
+        let _ = writeln!(text, "IMU.Frequency: {:.3}", self.rate_hz());
+        text
+    }
+
+    fn ros_covariance(&self) -> String {
+        let mut text = String::from(
+            "# For sensor_msgs/Imu: variances of one sample (x, y, z on the diagonal), row by row, as\n\
+             # measured between neighbouring samples. The bias is not in them.\n",
+        );
+        for sensor in self.each() {
+            let (key, unit) = match sensor.kind {
+                SensorKind::Gyroscope => ("angular_velocity_covariance", "(rad/s)^2"),
+                SensorKind::Accelerometer => ("linear_acceleration_covariance", "(m/s^2)^2"),
+            };
+            let variance = sensor.deviation.first().map(|d| d.octaves.map(|o| o.variance));
+            let [x, y, z] = variance.unwrap_or_default();
+            let _ =
+                writeln!(text, "{key}: [{x:.6e}, 0, 0, 0, {y:.6e}, 0, 0, 0, {z:.6e}]  # {unit}");
+        }
+        text
+    }
+
+    fn imu_utils(&self) -> String {
+        let mut text = String::from(
+            "%YAML:1.0\n---\n\
+             # As imu_utils writes it. _n: white noise of one sample, N sqrt(rate), for this rate only.\n\
+             # _w is NOT a random walk, although it is named like one: it is the lowest Allan deviation,\n\
+             # sqrt(2 N K/sqrt(3)). Who wants the random walk K takes --format vins, kalibr or orbslam3.\n\
+             type: IMU\nname: imu\n",
+        );
+        for sensor in [self.gyroscope, self.accelerometer].into_iter().flatten() {
+            let (head, key, unit) = match sensor.kind {
+                SensorKind::Gyroscope => ("Gyr", "gyr", "rad/s"),
+                SensorKind::Accelerometer => ("Acc", "acc", "m/s^2"),
+            };
+            let _ = writeln!(text, "{head}:\n   unit: \" {unit}\"");
+            let [x, y, z] = &sensor.axes;
+            for (name, axis) in
+                [("avg-axis", &sensor.pooled), ("x-axis", x), ("y-axis", y), ("z-axis", z)]
+            {
+                let ((n, n_remark), (k, k_remark)) =
+                    (value(axis.noise_density), value(axis.random_walk));
+                let (white, least) =
+                    (n * sensor.stamps.rate_hz.sqrt(), (2.0 * n * k / 3_f64.sqrt()).sqrt());
+                let comment = |remark: &str| match remark {
+                    "" => String::new(),
+                    remark => format!("  #{remark}"),
+                };
+                let _ =
+                    writeln!(text, "   {name}:\n      {key}_n: {white:.16e}{}", comment(n_remark));
+                let _ = writeln!(text, "      {key}_w: {least:.16e}{}", comment(k_remark));
+            }
+        }
+        text
+    }
+}
+
+/// Units of N and K in letters that every reader of YAML takes.
+fn densities(kind: SensorKind) -> (&'static str, &'static str) {
+    match kind {
+        SensorKind::Gyroscope => ("rad/s/sqrt(Hz)", "rad/s^2/sqrt(Hz)"),
+        SensorKind::Accelerometer => ("m/s^2/sqrt(Hz)", "m/s^3/sqrt(Hz)"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate::{Options, calibrate};
+    use crate::scene::{Preset, Scene, Simulator};
+
+    fn calibration() -> Calibration {
+        let scene = Scene { duration_ns: 3_600_000_000_000, ..Preset::High.scene() };
+        let source = Box::new(Simulator::new(&scene).unwrap());
+        calibrate(source, "simulated", &Options::default(), |_| {}).unwrap()
+    }
+
+    /// The first number behind a key.
+    fn number(text: &str, key: &str) -> f64 {
+        let (_, rest) = text.split_once(&format!("{key}: ")).unwrap_or_else(|| panic!("{key}: {text}"));
+        let end = rest.find(|c: char| c.is_whitespace() || c == ',').unwrap_or(rest.len());
+        rest[..end].trim_start_matches('[').parse().unwrap()
+    }
+
+    /// High noise at 200 Hz: N 0.03 and 0.03, K 1e-4 and 1e-3 (N of an hour is known to 0.1 %, K of the
+    /// accelerometer to some 10 %: five of those).
+    #[test]
+    fn units_are_those_of_the_programs() {
+        let calibration = calibration();
+        let close = |form: Form, key: &str, expected: f64, relative: f64| {
+            let value = number(&form.write(&calibration), key);
+            assert!((value / expected - 1.0).abs() < relative, "{form:?} {key}: {value}");
+        };
+        let root = 200_f64.sqrt();
+        close(Form::Vins, "gyr_n", 0.03 * root, 0.01);
+        close(Form::Vins, "acc_w", 1e-3 * root, 0.5);
+        close(Form::OpenVins, "gyroscope_noise_density", 0.03, 0.01);
+        close(Form::OpenVins, "accelerometer_random_walk", 1e-3, 0.5);
+        close(Form::OrbSlam3, "IMU.NoiseAcc", 0.03, 0.01);
+        close(Form::OrbSlam3, "IMU.Frequency", 200.0, 1e-6);
+        close(Form::RosCovariance, "angular_velocity_covariance", 0.03 * 0.03 * 200.0, 0.02);
+        close(Form::ImuUtils, "gyr_n", 0.03 * root, 0.01);
+        // √(2NK/√3)
+        close(Form::ImuUtils, "acc_w", (2.0 * 0.03 * 1e-3 / 3_f64.sqrt()).sqrt(), 0.3);
+        assert!(Form::ImuUtils.write(&calibration).contains("NOT a random walk"));
+    }
+}

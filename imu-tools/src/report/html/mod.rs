@@ -1,0 +1,252 @@
+//! The report as one page: no script, no network, light and dark, and made to be printed.
+//!
+//! ```
+//! use imu_tools::calibrate::{Options, calibrate};
+//! use imu_tools::report::html;
+//! use imu_tools::scene::{Preset, Scene, Simulator};
+//!
+//! let scene = Scene { duration_ns: 60_000_000_000, ..Preset::Mid.scene() };
+//! let source = Box::new(Simulator::new(&scene)?);
+//! let options = Options { keep_signal: true, ..Options::default() };
+//! let calibration = calibrate(source, "simulated", &options, |_| {})?;
+//! assert!(html::page(&calibration).starts_with("<!DOCTYPE html>"));
+//! # Ok::<(), imu_tools::error::Error>(())
+//! ```
+
+mod words;
+
+use imu_core::allan::Parameter;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::formats::Form;
+use super::json::AXES;
+use super::plot::{self, Figure, font_base64};
+use super::table::{duration, short};
+use super::{Quantity, Twin};
+use crate::calibrate::{AxisNoise, Calibration, SensorNoise};
+
+/// Colours of the page and of the pictures in it.
+const STYLE: &str = include_str!("../../../assets/report.css");
+
+/// The whole page.
+#[must_use]
+pub fn page(calibration: &Calibration) -> String {
+    let sensors: Vec<&SensorNoise> =
+        [&calibration.gyroscope, &calibration.accelerometer].into_iter().flatten().collect();
+    let font = format!(
+        "@font-face {{ font-family: \"Imu Sans\"; src: url(data:font/ttf;base64,{}); }}",
+        font_base64()
+    );
+    let markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "IMU noise: " (calibration.path) }
+                style { (PreEscaped(font)) (PreEscaped(plot::STYLE)) (PreEscaped(STYLE)) }
+            }
+            body {
+                h1 { "IMU noise" }
+                p.lead { (words::recorded(calibration)) }
+                (verdict(&sensors))
+                (warnings(calibration))
+                @for sensor in &sensors { (numbers(sensor)) }
+                (pictures(calibration))
+                (filters(calibration, &sensors))
+                h2 { "What to record next time" }
+                ul { @for sentence in words::next_time(&sensors) { li { (sentence) } } }
+                footer {
+                    p {
+                        "Intervals are of 90 % confidence. N and K are continuous-time densities. \
+                         Lettering: Imu Sans, a subset of DejaVu Sans."
+                    }
+                }
+            }
+        }
+    };
+    markup.into_string()
+}
+
+fn verdict(sensors: &[&SensorNoise]) -> Markup {
+    html! {
+        h2 { "Is it good enough?" }
+        @for sensor in sensors {
+            p { b { (words::capital(sensor.kind.name())) ". " } (words::verdict(sensor)) }
+        }
+    }
+}
+
+fn warnings(calibration: &Calibration) -> Markup {
+    html! {
+        @if !calibration.warnings.is_empty() {
+            h2 { "What is to be known of this recording" }
+            ul.warnings { @for warning in &calibration.warnings { li { (warning) } } }
+        }
+        @if !calibration.remarks.is_empty() {
+            p.small { "Taken for granted: " (calibration.remarks.join("; ")) "." }
+        }
+    }
+}
+
+/// N and K of a sensor, by axis and all together.
+fn numbers(sensor: &SensorNoise) -> Markup {
+    let kind = sensor.kind;
+    html! {
+        h2 { (words::capital(kind.name())) }
+        p { (words::sampling(sensor)) }
+        @for (quantity, of) in [
+            (Quantity::NoiseDensity(kind), (|a| a.noise_density) as fn(&AxisNoise) -> Parameter),
+            (Quantity::RandomWalk(kind), |a| a.random_walk),
+        ] {
+            h3 { (words::capital(quantity.name())) }
+            p { (words::meaning(quantity, of(&sensor.pooled))) }
+            div.wide {
+                table {
+                    thead {
+                        tr {
+                            th { "axis" }
+                            th { (quantity.unit()) }
+                            th { "90 % interval" }
+                            th { (quantity.twin().unit) }
+                        }
+                    }
+                    tbody {
+                        @for (name, axis) in AXES.iter().zip(&sensor.axes) {
+                            (row(name, of(axis), quantity.twin()))
+                        }
+                        (row("all", of(&sensor.pooled), quantity.twin()))
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn row(name: &str, parameter: Parameter, twin: Twin) -> Markup {
+    html! {
+        tr.all[name == "all"] {
+            td { (name) }
+            @match parameter {
+                Parameter::Observable { value, low90, high90, .. } => {
+                    td { (short(value)) }
+                    td {
+                        @if high90.is_finite() { (short(low90)) " to " (short(high90)) }
+                        @else { "a reading, none" }
+                    }
+                    td { (short(value * twin.per_si)) }
+                }
+                Parameter::NotObservable { upper90, .. } if upper90.is_finite() => {
+                    td { "not observable" }
+                    td { "below " (short(upper90)) }
+                    td { "below " (short(upper90 * twin.per_si)) }
+                }
+                Parameter::NotObservable { .. } => {
+                    td { "not observable" }
+                    td { "nothing is known" }
+                    td { "–" }
+                }
+            }
+        }
+    }
+}
+
+fn pictures(calibration: &Calibration) -> Markup {
+    html! {
+        h2 { "How to read the plots" }
+        (picture(&plot::allan(calibration), words::ALLAN))
+        (picture(&plot::residual(calibration), words::RESIDUAL))
+        (picture(&plot::signal(calibration), words::SIGNAL))
+    }
+}
+
+fn picture(figure: &Figure, caption: &str) -> Markup {
+    html! {
+        @if !figure.is_empty() {
+            figure {
+                div.plot { (PreEscaped(figure.inline())) }
+                figcaption { (caption) }
+            }
+        }
+    }
+}
+
+fn filters(calibration: &Calibration, sensors: &[&SensorNoise]) -> Markup {
+    let forms = [
+        ("Kalibr", "imu.yaml", Form::Kalibr),
+        ("VINS-Mono, VINS-Fusion", "in the configuration", Form::Vins),
+        ("OpenVINS", "kalibr_imu_chain.yaml", Form::OpenVins),
+        ("ORB-SLAM3", "in the settings", Form::OrbSlam3),
+        ("ROS", "covariances of sensor_msgs/Imu", Form::RosCovariance),
+    ];
+    html! {
+        h2 { "What to put into your filter" }
+        p { (words::WHY_MORE) }
+        ul { @for sentence in words::inflation(sensors) { li { (sentence) } } }
+        @for (program, file, form) in forms {
+            details {
+                summary { (program) " (" (file) ")" }
+                pre { (form.write(calibration)) }
+            }
+        }
+    }
+}
+
+/// A span of time as words.
+fn span(seconds: f64) -> String {
+    duration(seconds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate::{Options, calibrate};
+    use crate::scene::{Preset, Scene, Simulator};
+
+    fn calibration(seconds: u64, name: &str) -> Calibration {
+        let scene = Scene { duration_ns: seconds * 1_000_000_000, ..Preset::Mid.scene() };
+        let source = Box::new(Simulator::new(&scene).unwrap());
+        let options = Options { keep_signal: true, ..Options::default() };
+        calibrate(source, name, &options, |_| {}).unwrap()
+    }
+
+    #[test]
+    fn a_page_answers_and_stays_small_and_alone() {
+        let page = page(&calibration(600, "a <b>&.bag"));
+        for words in [
+            "a &lt;b&gt;&amp;.bag, 10 min long",
+            "White noise is known well",
+            "Is it good enough?",
+            "How to read the plots",
+            "What to put into your filter",
+            "What to record next time",
+            "angle random walk",
+            "Integrated over an hour",
+        ] {
+            assert!(page.contains(words) || page.contains(&words::capital(words)), "{words}");
+        }
+        assert!(page.len() < 1_000_000, "{}", page.len());
+        // Nothing is fetched: the only address is the name of SVG.
+        assert!(page.matches("http").count() == page.matches("http://www.w3.org/2000/svg").count());
+        assert!(!page.contains("<script") && !page.contains("NaN") && !page.contains("inf "));
+    }
+
+    /// Seconds, a constant: pages and pictures say what is not known, and none has a number that is
+    /// none.
+    #[test]
+    fn little_is_said_of_little() {
+        let page = page(&calibration(2, "short"));
+        assert!(page.contains("record longer") || page.contains("does not show"), "{page}");
+        assert!(!page.contains("NaN"));
+        let svg = plot::allan(&calibration(2, "short")).svg();
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
+
+    #[test]
+    fn the_plot_is_a_png_of_its_svg() {
+        let figure = plot::allan(&calibration(60, "a"));
+        let png = figure.png().unwrap();
+        assert!(png.starts_with(b"\x89PNG\r\n") && png.len() > 20_000);
+        assert!(figure.svg().contains("gyroscope: Allan deviation"));
+    }
+}

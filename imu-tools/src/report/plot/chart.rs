@@ -1,0 +1,155 @@
+//! A chart: a frame with two axes, in which lines, bands and marks are drawn.
+
+use super::scale::Scale;
+use super::svg::{Anchor, Point, Shapes};
+
+/// Pixels around the frame: left, right, above, below.
+const LEFT: f64 = 78.0;
+const RIGHT: f64 = 18.0;
+const ABOVE: f64 = 34.0;
+const BELOW: f64 = 50.0;
+/// Nearest two labels of an axis may come, across.
+const ACROSS: f64 = 34.0;
+
+/// A chart under construction.
+pub(super) struct Chart {
+    /// Upper left corner and size, all of it.
+    at: Point,
+    size: (f64, f64),
+    x: Scale,
+    y: Scale,
+    inside: Shapes,
+    /// What stands in the frame whatever lies below it.
+    marks: Shapes,
+    legend: Vec<(&'static str, String)>,
+}
+
+impl Chart {
+    /// A chart of this size, whose upper left corner is at `at`.
+    pub(super) fn new(at: Point, size: (f64, f64), x: Scale, y: Scale) -> Self {
+        let (inside, marks) = (Shapes::default(), Shapes::default());
+        Self { at, size, x, y, inside, marks, legend: Vec::new() }
+    }
+
+    fn frame(&self) -> (Point, Point) {
+        let (x, y) = self.at;
+        ((x + LEFT, y + ABOVE), (x + self.size.0 - RIGHT, y + self.size.1 - BELOW))
+    }
+
+    fn across(&self, x: f64) -> f64 {
+        let ((left, _), (right, _)) = self.frame();
+        left + self.x.place(x).clamp(-10.0, 10.0) * (right - left)
+    }
+
+    fn up(&self, y: f64) -> f64 {
+        let ((_, top), (_, bottom)) = self.frame();
+        bottom - self.y.place(y).clamp(-10.0, 10.0) * (bottom - top)
+    }
+
+    fn pixels(&self, points: &[Point]) -> Vec<Point> {
+        points
+            .iter()
+            .filter(|(x, y)| x.is_finite() && y.is_finite())
+            .map(|&(x, y)| (self.across(x), self.up(y)))
+            .collect()
+    }
+
+    /// A line through values.
+    pub(super) fn line(&mut self, class: &str, points: &[Point]) {
+        let points = self.pixels(points);
+        self.inside.line(class, &points);
+    }
+
+    /// A dot at each value.
+    pub(super) fn dots(&mut self, class: &str, points: &[Point]) {
+        for point in self.pixels(points) {
+            self.inside.dot(class, point, 2.6);
+        }
+    }
+
+    /// A vertical bar from one value to another.
+    pub(super) fn bar(&mut self, class: &str, x: f64, low: f64, high: f64) {
+        let points = self.pixels(&[(x, low), (x, high)]);
+        self.inside.line(class, &points);
+    }
+
+    /// The area between two lines over the same x: (x, low, high).
+    pub(super) fn band(&mut self, class: &str, rows: &[(f64, f64, f64)]) {
+        let lower = rows.iter().map(|&(x, low, _)| (x, low));
+        let upper = rows.iter().rev().map(|&(x, _, high)| (x, high));
+        let outline: Vec<Point> = lower.chain(upper).collect();
+        let outline = self.pixels(&outline);
+        self.inside.area(class, &outline);
+    }
+
+    /// Everything between two x, from bottom to top.
+    pub(super) fn stripe(&mut self, class: &str, from: f64, to: f64) {
+        let ((left, top), (right, bottom)) = self.frame();
+        let (from, to) = (self.across(from).clamp(left, right), self.across(to).clamp(left, right));
+        // A second of a day is still seen.
+        self.inside.rectangle(class, (from, top), (to.max(from + 1.0), bottom));
+    }
+
+    /// A point with its name above it or below, to the right of it or, near the edge, to the left.
+    pub(super) fn mark(&mut self, class: &str, (x, y): Point, below: bool, name: &str) {
+        let ((left, top), (right, bottom)) = self.frame();
+        let (px, py) = (self.across(x), self.up(y));
+        if !(left..=right).contains(&px) || !(top..=bottom).contains(&py) {
+            return;
+        }
+        self.marks.dot(class, (px, py), 4.5);
+        let near_edge = px > right - 150.0;
+        let (to, anchor) = if near_edge { (-9.0, Anchor::End) } else { (9.0, Anchor::Start) };
+        let at = (px + to, if below { py + 20.0 } else { py - 8.0 });
+        self.marks.words("halo", at, anchor, name);
+        self.marks.words("mark-name", at, anchor, name);
+    }
+
+    /// Names a class of lines in the legend.
+    pub(super) fn name(&mut self, class: &'static str, name: &str) {
+        self.legend.push((class, name.to_owned()));
+    }
+
+    /// The whole chart; `id` is its own in the drawing.
+    pub(super) fn finish(self, id: &str, title: &str, x_name: &str, y_name: &str) -> Shapes {
+        let (from, to) = self.frame();
+        let mut shapes = Shapes::default();
+        shapes.words("title", (from.0, from.1 - 13.0), Anchor::Start, title);
+        self.grid(&mut shapes);
+        shapes.append_within(&self.inside, id, from, to);
+        shapes.rectangle("frame", from, to);
+        shapes.append(&self.marks);
+        let middle = 0.5 * (from.0 + to.0);
+        shapes.words("label", (middle, to.1 + 38.0), Anchor::Middle, x_name);
+        shapes.upwards("label", (self.at.0 + 16.0, 0.5 * (from.1 + to.1)), y_name);
+        let mut x = to.0;
+        for (class, name) in self.legend.iter().rev() {
+            x -= 7.2 * name.chars().count() as f64;
+            shapes.words("label", (x, from.1 - 13.0), Anchor::Start, name);
+            x -= 8.0;
+            shapes.line(class, &[(x - 18.0, from.1 - 17.0), (x, from.1 - 17.0)]);
+            x -= 30.0;
+        }
+        shapes
+    }
+
+    fn grid(&self, shapes: &mut Shapes) {
+        let ((left, top), (right, bottom)) = self.frame();
+        let mut last = f64::NEG_INFINITY;
+        for tick in self.x.ticks() {
+            let x = self.across(tick.value);
+            let class = if tick.label.is_empty() { "minor" } else { "grid" };
+            shapes.line(class, &[(x, top), (x, bottom)]);
+            if !tick.label.is_empty() && x - last >= ACROSS {
+                shapes.words("tick", (x, bottom + 17.0), Anchor::Middle, &tick.label);
+                last = x;
+            }
+        }
+        for tick in self.y.ticks() {
+            let y = self.up(tick.value);
+            let class = if tick.label.is_empty() { "minor" } else { "grid" };
+            shapes.line(class, &[(left, y), (right, y)]);
+            shapes.words("tick", (left - 7.0, y + 4.0), Anchor::End, &tick.label);
+        }
+    }
+}
