@@ -217,7 +217,8 @@ mod tests {
 
     /// The first number behind a key.
     fn number(text: &str, key: &str) -> f64 {
-        let (_, rest) = text.split_once(&format!("{key}: ")).unwrap_or_else(|| panic!("{key}: {text}"));
+        let (_, rest) =
+            text.split_once(&format!("{key}: ")).unwrap_or_else(|| panic!("{key}: {text}"));
         let end = rest.find(|c: char| c.is_whitespace() || c == ',').unwrap_or(rest.len());
         rest[..end].trim_start_matches('[').parse().unwrap()
     }

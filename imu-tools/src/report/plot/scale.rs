@@ -177,10 +177,7 @@ mod tests {
     #[test]
     fn linear() {
         assert_eq!(labels(&Scale::between(0.0, 4.0)), ["0", "1", "2", "3", "4"]);
-        assert_eq!(
-            labels(&Scale::between(-0.02, 0.02)),
-            ["−0.02", "−0.01", "0.00", "0.01", "0.02"]
-        );
+        assert_eq!(labels(&Scale::between(-0.02, 0.02)), ["−0.02", "−0.01", "0", "0.01", "0.02"]);
         assert_eq!(labels(&Scale::between(0.0, 2e-6))[1], "5·10⁻⁷");
         // Nothing to see, or too much: no panic, no endless list.
         for (low, high) in [(9.8, 9.8), (f64::NAN, 1.0), (0.0, f64::INFINITY), (-1e308, 1e308)] {
