@@ -4,7 +4,7 @@
 //! wraps round: neither amplitude nor phase drifts, and after 10⁹ samples the phase is off by less
 //! than 10⁻⁶ rad of A sin(2π f t + φ). A frequency above half the sampling rate appears where the
 //! sampling folds it, as in a sensor without a filter. The sine is its Taylor polynomial over a
-//! quarter turn, without `libm`: within 3·10⁻⁷ A in `f32`, 4·10⁻¹⁶ A in `f64`.
+//! quarter turn, without `libm`: within 3·10⁻⁷ A in `f32`, 10⁻¹⁵ A in `f64`.
 //!
 //! Sampled, the Allan variance at τ = m·dt is A² sin⁴(πfτ)/(m sin πf dt)² (IEEE Std 952, annex C,
 //! gives the continuous form A² (sin²(πfτ)/(πfτ))²): a first peak at τ = 0.371/f, then lobes that
