@@ -12,7 +12,29 @@
 //! noise_density = 0.015            # N, for all axes
 //! random_walk = [5e-5, 5e-5, 0]    # K, for x, y, z; 0 leaves the term out
 //! constant_bias = 0.01
+//! turn_on_bias = 1e-3              # standard deviation of an offset drawn once
+//! rate_ramp = 1e-9                 # R: growth of the bias a second
 //! lowpass_hz = 42                  # one-pole bandwidth; left out: none
+//! saturation = 35                  # full scale
+//! quantisation = 1.3e-4            # one count
+//!
+//! [gyroscope.flicker]              # bias instability B, flat between two averaging times
+//! bias_instability = 1e-4
+//! shortest_tau_s = 1
+//! longest_tau_s = 1000
+//!
+//! [gyroscope.gauss_markov]
+//! standard_deviation = 1e-4
+//! correlation_time_s = 300
+//!
+//! [gyroscope.vibration]            # one frequency
+//! amplitude = [0.01, 0, 0]
+//! frequency_hz = 47
+//!
+//! [gyroscope.band_vibration]       # a band about a frequency
+//! standard_deviation = 0.01
+//! frequency_hz = 30
+//! bandwidth_hz = 10
 //!
 //! [accelerometer]                  # m/s²
 //! noise_density = 0.019
@@ -21,9 +43,10 @@
 use std::fmt;
 
 use serde::Deserialize;
-use serde::de::{self, Deserializer, SeqAccess, Visitor};
+use serde::de::{self, Deserializer, Visitor};
 
-use super::{Path, Rate, Scene, SensorErrors, parse_duration};
+use super::errors::SensorTable;
+use super::{Path, Rate, Scene, parse_duration};
 use crate::error::Error;
 
 /// A file's keys as they stand in it.
@@ -37,9 +60,9 @@ struct File {
     motion: Option<Motion>,
     gravity: Option<f64>,
     #[serde(default)]
-    gyroscope: Sensor,
+    gyroscope: SensorTable,
     #[serde(default)]
-    accelerometer: Sensor,
+    accelerometer: SensorTable,
 }
 
 #[derive(Deserialize)]
@@ -47,56 +70,6 @@ struct File {
 enum Motion {
     Rest,
     Ellipse,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct Sensor {
-    noise_density: Axes,
-    random_walk: Axes,
-    constant_bias: Axes,
-    lowpass_hz: Option<f64>,
-}
-
-/// One number for all axes, or one for each.
-#[derive(Clone, Copy, Default)]
-struct Axes([f64; 3]);
-
-impl<'de> Deserialize<'de> for Axes {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        struct Numbers;
-
-        impl<'de> Visitor<'de> for Numbers {
-            type Value = Axes;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number for all axes, or three, [x, y, z]")
-            }
-
-            fn visit_f64<E: de::Error>(self, x: f64) -> Result<Axes, E> {
-                Ok(Axes([x; 3]))
-            }
-
-            fn visit_i64<E: de::Error>(self, x: i64) -> Result<Axes, E> {
-                Ok(Axes([x as f64; 3]))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Axes, A::Error> {
-                let mut axes = [0.0; 3];
-                for (i, axis) in axes.iter_mut().enumerate() {
-                    *axis = seq
-                        .next_element::<f64>()?
-                        .ok_or_else(|| de::Error::invalid_length(i, &self))?;
-                }
-                if seq.next_element::<f64>()?.is_some() {
-                    return Err(de::Error::invalid_length(4, &self));
-                }
-                Ok(Axes(axes))
-            }
-        }
-
-        from.deserialize_any(Numbers)
-    }
 }
 
 /// A duration in nanoseconds, from `"4h"` or a number of seconds.
@@ -197,46 +170,51 @@ impl Scene {
     }
 }
 
-impl Sensor {
-    fn errors(&self) -> SensorErrors {
-        SensorErrors {
-            noise_density: self.noise_density.0,
-            random_walk: self.random_walk.0,
-            constant_bias: self.constant_bias.0,
-            lowpass_hz: self.lowpass_hz,
-        }
-    }
-}
-
-impl SensorErrors {
-    fn check(&self, sensor: &str) -> Result<(), Error> {
-        for (key, values) in
-            [("noise_density", self.noise_density), ("random_walk", self.random_walk)]
-        {
-            if let Some(bad) = values.iter().find(|x| !(0.0..=1e6).contains(*x)) {
-                return Err(Error::usage(format!(
-                    "{key} = {bad} of the {sensor} cannot be: give a number from 0 (term left \
-                     out) to 1e6"
-                )));
-            }
-        }
-        if let Some(bad) = self.constant_bias.iter().find(|x| !(-1e6..=1e6).contains(*x)) {
-            return Err(Error::usage(format!(
-                "constant_bias = {bad} of the {sensor} cannot be: give a number within ±1e6"
-            )));
-        }
-        match self.lowpass_hz {
-            Some(hz) if !(hz > 0.0 && hz <= 1e6) => Err(Error::usage(format!(
-                "a low-pass at {hz} Hz of the {sensor} cannot be: give a cut-off above 0, up to 1e6"
-            ))),
-            _ => Ok(()),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{
+        Axes, BandVibrationTerm, FlickerTerm, GaussMarkovTerm, SensorErrors, VibrationTerm,
+    };
+
+    #[test]
+    fn every_term_has_its_key() {
+        let text = "[gyroscope]\nturn_on_bias = 1e-3\nrate_ramp = [1e-9, 0, -1e-9]\n\
+             saturation = 35\nquantisation = 1.3e-4\n\
+             [gyroscope.flicker]\nbias_instability = 1e-4\nshortest_tau_s = 1\n\
+             longest_tau_s = 1000\n\
+             [gyroscope.gauss_markov]\nstandard_deviation = [1, 2, 3]\ncorrelation_time_s = 300\n\
+             [accelerometer.vibration]\namplitude = 0.5\nfrequency_hz = 47\n\
+             [accelerometer.band_vibration]\nstandard_deviation = 0.1\nfrequency_hz = 30\n\
+             bandwidth_hz = 10\n";
+        let scene = Scene::from_toml(text, "a.toml").unwrap();
+        let gyroscope = SensorErrors {
+            turn_on_bias: [1e-3; 3],
+            rate_ramp: [1e-9, 0.0, -1e-9],
+            saturation: Some(35.0),
+            quantisation: Some(1.3e-4),
+            flicker: Some(FlickerTerm {
+                bias_instability: Axes([1e-4; 3]),
+                shortest_tau_s: 1.0,
+                longest_tau_s: 1000.0,
+            }),
+            gauss_markov: Some(GaussMarkovTerm {
+                standard_deviation: Axes([1.0, 2.0, 3.0]),
+                correlation_time_s: 300.0,
+            }),
+            ..SensorErrors::default()
+        };
+        let accelerometer = SensorErrors {
+            vibration: Some(VibrationTerm { amplitude: Axes([0.5; 3]), frequency_hz: 47.0 }),
+            band_vibration: Some(BandVibrationTerm {
+                standard_deviation: Axes([0.1; 3]),
+                frequency_hz: 30.0,
+                bandwidth_hz: 10.0,
+            }),
+            ..SensorErrors::default()
+        };
+        assert_eq!((scene.gyroscope, scene.accelerometer), (gyroscope, accelerometer));
+    }
 
     #[test]
     fn a_full_file_is_read() {
@@ -286,6 +264,13 @@ mod tests {
             ("[gyroscope]\nnoise_density = -1", &["noise_density = -1", "gyroscope"]),
             ("[accelerometer]\nrandom_walk = nan", &["random_walk = NaN", "accelerometer"]),
             ("[accelerometer]\nlowpass_hz = 0", &["low-pass at 0 Hz"]),
+            ("[gyroscope]\nturn_on_bias = -1", &["turn_on_bias = -1", "gyroscope"]),
+            ("[gyroscope]\nquantisation = 0", &["quantisation = 0", "above 0"]),
+            ("[gyroscope.flicker]\nbias_instability = 1", &["line 1", "`shortest_tau_s`"]),
+            (
+                "[gyroscope.vibration]\namplitude = 1\nfrequency_hz = -3",
+                &["vibration.frequency_hz = -3", "gyroscope"],
+            ),
             ("start_ns = -1", &["start_ns = -1"]),
             ("start_ns = 9223372036854775807", &["2262"]),
             ("gravity = inf", &["gravity = inf"]),

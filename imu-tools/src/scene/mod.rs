@@ -18,14 +18,19 @@
 //! # Ok::<(), imu_tools::error::Error>(())
 //! ```
 
+mod chain;
 mod clock;
 mod duration;
+mod errors;
 mod file;
 mod simulator;
 mod truth;
 
 pub use clock::Rate;
 pub use duration::{display_duration, parse_duration};
+pub use errors::{
+    Axes, BandVibrationTerm, FlickerTerm, GaussMarkovTerm, SensorErrors, VibrationTerm,
+};
 pub use simulator::{Simulator, Truth};
 pub use truth::TruthWriter;
 
@@ -73,19 +78,6 @@ impl Default for Scene {
             accelerometer: SensorErrors::default(),
         }
     }
-}
-
-/// The error terms of one sensor on its axes x, y, z; a zero is a term left out.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SensorErrors {
-    /// N, in the sensor's unit per √Hz.
-    pub noise_density: [f64; 3],
-    /// K, in the sensor's unit per second per √Hz.
-    pub random_walk: [f64; 3],
-    /// A constant offset, in the sensor's unit.
-    pub constant_bias: [f64; 3],
-    /// Cut-off of a one-pole low-pass before the sampling, Hz.
-    pub lowpass_hz: Option<f64>,
 }
 
 /// A true motion.

@@ -1,17 +1,13 @@
 //! The simulator: a scene played block by block, axis by axis, one loop for each term present.
 //!
-//! The same core stages in the same order as the compiled composition
-//! `(White, RandomWalk, ConstantBias)`, so the same bits; a term that the scene leaves out has no
-//! loop, draws nothing and costs nothing. After them the bandwidth, where the scene limits it.
+//! The same core stages in the same order as a compiled composition, so the same bits; a term that
+//! the scene leaves out has no loop, draws nothing and costs nothing (`chain.rs`).
 
 use imu_core::nalgebra::Vector3;
-use imu_core::noise::{
-    Axis, Channel, ConstantBias, RandomWalk, RandomWalkStage, Sensor, Stage, Term, White,
-    WhiteStage,
-};
-use imu_core::sensor::{OnePole, OnePoleStage};
+use imu_core::noise::Sensor;
 use imu_core::trajectory::Motion;
 
+use super::chain::Chain;
 use super::clock::Ticks;
 use super::{Path, Scene, SensorErrors};
 use crate::error::Error;
@@ -138,12 +134,9 @@ fn measure(
     }
     for (axis, chain) in chains.iter_mut().enumerate() {
         if let Some(bias) = &mut bias {
-            // A copy of the stages, on zeros: the samples keep the bits they have without truth.
             column.clear();
             column.resize(samples.len(), 0.0);
-            let mut copy = *chain;
-            copy.walk.iter_mut().for_each(|stage| stage.apply(column));
-            copy.constant.iter_mut().for_each(|stage| stage.apply(column));
+            chain.biases(column);
             bias.iter_mut().zip(column.iter()).for_each(|(bias, x)| bias[axis] = *x);
         }
         column.clear();
@@ -151,65 +144,6 @@ fn measure(
         chain.apply(column);
         samples.iter_mut().zip(column.iter()).for_each(|(sample, x)| sample.value[axis] = *x);
     }
-}
-
-/// The terms present on one axis, in the order in which they act.
-#[derive(Clone, Copy, Debug, Default)]
-struct Chain {
-    white: Option<WhiteStage<f64>>,
-    walk: Option<RandomWalkStage<f64>>,
-    constant: Option<ConstantBias<f64>>,
-    low_pass: Option<OnePoleStage<f64>>,
-}
-
-impl Chain {
-    /// `truth`: the first true value, from which a low-pass starts.
-    fn new(
-        scene: &Scene,
-        sensor: Sensor,
-        axis: usize,
-        errors: &SensorErrors,
-        truth: f64,
-    ) -> Result<Self, Error> {
-        let dt = scene.rate.interval_s();
-        let channel = Channel::new(scene.seed, sensor, Axis::ALL[axis]);
-        let [noise_density, random_walk, constant_bias] =
-            [errors.noise_density, errors.random_walk, errors.constant_bias].map(|x| x[axis]);
-        let cannot = |error: imu_core::Error| {
-            Error::usage(format!("this noise cannot be simulated at this rate: {error}"))
-        };
-        Ok(Self {
-            white: present(White { noise_density }, noise_density, dt, channel).map_err(cannot)?,
-            walk: present(RandomWalk { random_walk }, random_walk, dt, channel).map_err(cannot)?,
-            constant: present(ConstantBias { constant_bias }, constant_bias, dt, channel)
-                .map_err(cannot)?,
-            low_pass: errors
-                .lowpass_hz
-                .map(|cutoff| {
-                    OnePole { cutoff, start: truth + constant_bias, noise_density }
-                        .prepare(dt, channel)
-                })
-                .transpose()
-                .map_err(cannot)?,
-        })
-    }
-
-    fn apply(&mut self, column: &mut [f64]) {
-        self.white.iter_mut().for_each(|stage| stage.apply(column));
-        self.walk.iter_mut().for_each(|stage| stage.apply(column));
-        self.constant.iter_mut().for_each(|stage| stage.apply(column));
-        self.low_pass.iter_mut().for_each(|stage| stage.apply(column));
-    }
-}
-
-/// The stage of a term, unless its parameter is zero.
-fn present<P: Term<f64>>(
-    term: P,
-    parameter: f64,
-    dt: f64,
-    channel: Channel,
-) -> Result<Option<P::Stage>, imu_core::Error> {
-    if parameter == 0.0 { Ok(None) } else { term.prepare(dt, channel).map(Some) }
 }
 
 impl Source for Simulator {
