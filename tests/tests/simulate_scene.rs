@@ -17,12 +17,14 @@ fn full() -> Scene {
             random_walk: [1e-3, 2e-3, 3e-3],
             constant_bias: [0.1, -0.2, 0.3],
             lowpass_hz: None,
+            ..SensorErrors::default()
         },
         accelerometer: SensorErrors {
             noise_density: [0.04, 0.05, 0.06],
             random_walk: [4e-3, 5e-3, 6e-3],
             constant_bias: [-0.4, 0.5, -0.6],
             lowpass_hz: None,
+            ..SensorErrors::default()
         },
         ..Preset::Mid.scene()
     }
