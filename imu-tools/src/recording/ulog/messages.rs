@@ -292,7 +292,7 @@ impl Messages {
             },
             b'F' => judge_format(body, short),
             b'I' | b'P' => judge_value(body, size),
-            b'M' | b'Q' => judge_value(body.get(1..).unwrap_or_default(), size - 1),
+            b'M' | b'Q' => judge_value(body.get(1..).unwrap_or_default(), size.saturating_sub(1)),
             b'L' => judge_text(body, size, 9),
             b'C' => judge_text(body, size, 11),
             b'O' | b'R' => sized(size == 2),
@@ -365,4 +365,22 @@ fn judge_text(body: &[u8], size: usize, start: usize) -> Trust {
     let text = body.get(start..).unwrap_or_default();
     let printed = text.iter().take(32).all(|&b| b >= b' ' || b"\t\n\r\x1b".contains(&b));
     if level && text.len() >= 4 && printed { Trust::Words } else { Trust::Doubtful }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io;
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn a_message_of_no_bytes_is_none_whatever_its_kind() {
+        let input = Input::pipe(Path::new("a"), Box::new(io::empty()));
+        let messages = Messages::new(input, Definitions::default());
+        for kind in 0..=u8::MAX {
+            let trust = messages.judge(&[&[0, 0, kind], &SYNC[..]].concat());
+            assert_eq!(trust, Trust::None, "{}", char::from(kind));
+        }
+    }
 }
