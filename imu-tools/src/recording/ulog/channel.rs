@@ -192,7 +192,10 @@ impl Channel {
     /// Readings of a message, as far as its bytes tell.
     pub fn count(&self, message: &[u8]) -> u64 {
         match self.readings {
-            Readings::Fifo { samples, .. } => samples.read(message).unwrap_or(0.0) as u64,
+            Readings::Fifo { samples, .. } => {
+                let samples = samples.read(message).unwrap_or(0.0) as u64;
+                if samples > MOST as u64 { 0 } else { samples }
+            }
             _ => 1,
         }
     }
@@ -322,6 +325,26 @@ mod tests {
         message[28] = 5;
         assert!(channel.take(&message, 0, &mut samples).malformed);
         assert_eq!(samples.len(), 3);
+        assert_eq!(channel.count(&message), 5);
+    }
+
+    #[test]
+    fn a_batch_of_more_than_there_can_be_counts_nothing() {
+        for (samples, bytes, count) in [
+            ("uint64_t", 255_u64.to_le_bytes(), 255),
+            ("uint64_t", 256_u64.to_le_bytes(), 0),
+            ("uint64_t", u64::MAX.to_le_bytes(), 0),
+            ("double", f64::INFINITY.to_le_bytes(), 0),
+            ("double", f64::NAN.to_le_bytes(), 0),
+            ("int64_t", (-1_i64).to_le_bytes(), 0),
+        ] {
+            let layout = layout(&format!(
+                "sensor_gyro_fifo:{samples} samples;uint64_t timestamp;float dt;float scale;\
+                 int16_t[255] x;int16_t[255] y;int16_t[255] z;"
+            ));
+            let channel = layout.unwrap().gyroscope.unwrap();
+            assert_eq!(channel.count(&bytes), count, "{samples} {bytes:?}");
+        }
     }
 
     #[test]
