@@ -11,6 +11,10 @@ const TEXT: usize = 4 << 20;
 /// Formats within formats, at most.
 const DEPTH: u32 = 8;
 
+/// Fields looked at to find the length of a format, at most, in the formats within as often as they
+/// occur: a topic has some hundred.
+const FIELDS: usize = 4096;
+
 /// Bytes of a message, at most: its size is written in 16 bits.
 const LONGEST: usize = 65_535;
 
@@ -170,18 +174,19 @@ impl Formats {
     /// Length of a message without the padding at its end, and with it; `None` where its format, or
     /// one within, is not known, or no message can hold it.
     pub fn lengths(&self, name: &str) -> Option<(usize, usize)> {
-        Some((self.trimmed(name, 0)?, self.length(name, 0)?))
+        let mut left = FIELDS;
+        Some((self.trimmed(name, 0, &mut left)?, self.length(name, 0, &mut left)?))
     }
 
     /// A field of plain type of a message.
     pub fn field(&self, format: &str, field: &str) -> Option<Field> {
-        let mut offset = 0;
+        let (mut offset, mut left) = (0, FIELDS);
         for member in self.by_name.get(format)? {
             if member.name == field {
                 let scalar = Scalar::parse(&member.type_name)?;
                 return Some(Field { scalar, offset, count: member.count });
             }
-            offset += self.member_length(member, 0)?;
+            offset += self.member_length(member, 0, &mut left)?;
             if offset > LONGEST {
                 return None;
             }
@@ -189,19 +194,20 @@ impl Formats {
         None
     }
 
-    fn member_length(&self, member: &Member, depth: u32) -> Option<usize> {
+    fn member_length(&self, member: &Member, depth: u32, left: &mut usize) -> Option<usize> {
+        *left = left.checked_sub(1)?;
         let one = match Scalar::parse(&member.type_name) {
             Some(scalar) => scalar.size(),
-            None => self.length(&member.type_name, depth + 1)?,
+            None => self.length(&member.type_name, depth + 1, left)?,
         };
         Some(one * member.count)
     }
 
-    fn length(&self, name: &str, depth: u32) -> Option<usize> {
+    fn length(&self, name: &str, depth: u32, left: &mut usize) -> Option<usize> {
         let members = self.by_name.get(name).filter(|_| depth < DEPTH)?;
         let mut length = 0;
         for member in members {
-            length += self.member_length(member, depth)?;
+            length += self.member_length(member, depth, left)?;
             if length > LONGEST {
                 return None;
             }
@@ -210,20 +216,20 @@ impl Formats {
     }
 
     /// The length up to the last byte that is no padding at the end, also of formats within.
-    fn trimmed(&self, name: &str, depth: u32) -> Option<usize> {
+    fn trimmed(&self, name: &str, depth: u32, left: &mut usize) -> Option<usize> {
         let members = self.by_name.get(name).filter(|_| depth < DEPTH)?;
         let last = members.iter().rposition(|member| !member.is_padding())?;
         let (before, last) = (members.get(..last)?, members.get(last)?);
         let mut length = 0;
         for member in before {
-            length += self.member_length(member, depth)?;
+            length += self.member_length(member, depth, left)?;
         }
-        let whole = self.member_length(last, depth)?;
+        let whole = self.member_length(last, depth, left)?;
         let tail = match Scalar::parse(&last.type_name) {
             Some(_) => 0,
             None => {
-                let inner = self.length(&last.type_name, depth + 1)?;
-                inner - self.trimmed(&last.type_name, depth + 1)?
+                let inner = self.length(&last.type_name, depth + 1, left)?;
+                inner - self.trimmed(&last.type_name, depth + 1, left)?
             }
         };
         Some(length + whole - tail)
@@ -316,6 +322,19 @@ mod tests {
             assert_eq!(formats.lengths(name), None, "{name}");
         }
         assert_eq!(formats.field("f", "x"), None);
+    }
+
+    #[test]
+    fn formats_within_formats_are_not_counted_without_end() {
+        // 4^6 fields, and with what is above them more than are looked at.
+        let texts: Vec<String> = (0..6)
+            .map(|i| format!("f{i}:{}", format!("f{} a;", i + 1).repeat(4)))
+            .chain(["f6:char a".to_owned()])
+            .collect();
+        let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+        let formats = formats(&texts);
+        assert_eq!(formats.lengths("f0"), None);
+        assert_eq!(formats.lengths("f2"), Some((256, 256)));
     }
 
     #[test]
