@@ -90,7 +90,7 @@ impl Array {
                     let (before, stride, at) = if one_by_one {
                         (column.saturating_mul(rows).saturating_mul(bytes), bytes, 0)
                     } else {
-                        (0, width, column * bytes)
+                        (0, width, column.saturating_mul(bytes))
                     };
                     let suffix = match (columns, column) {
                         (3, 0) => "x".to_owned(),
@@ -169,5 +169,25 @@ pub fn columns(
                 shapes()
             ))
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elements_of_any_size_have_columns() {
+        let field = Field { name: String::new(), at: 0, scalar: Err("V".into()) };
+        for record in [1 << 62, usize::MAX] {
+            for fortran in [false, true] {
+                let fields = vec![field.clone()];
+                let header = Header { shape: vec![5, 7], fortran, record, fields, len: 0 };
+                let array = Array { name: String::new(), header, member: None };
+                let columns = array.columns(0);
+                assert_eq!(columns.len(), 7);
+                assert!(columns.iter().all(|column| column.stride >= record));
+            }
+        }
     }
 }
