@@ -16,6 +16,9 @@ pub struct Name {
     half: Option<Column>,
 }
 
+/// Words of a unit, at most: `metres per second per second`.
+const UNIT: usize = 5;
+
 /// Words that may precede an axis in one piece, as in `gyrox`.
 const GYROSCOPE: [&str; 13] = [
     "gyro",
@@ -118,7 +121,7 @@ impl Name {
                 return;
             }
         };
-        for at in 1..before.len() {
+        for at in before.len().saturating_sub(UNIT).max(1)..before.len() {
             let (sensor, unit) = before.split_at(at);
             let unit = match quotient(unit) {
                 // What PX4 calls an angular rate.
@@ -282,4 +285,18 @@ fn axis(word: &str) -> Option<(&str, u8)> {
     let axis = word.bytes().last()?.checked_sub(b'x')?;
     let known = stem.is_empty() || GYROSCOPE.contains(&stem) || ACCELEROMETER.contains(&stem);
     known.then_some((stem, axis))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As many words as a megabyte holds: to try each as the first of a unit takes an hour.
+    #[test]
+    fn a_name_of_any_length_is_read_in_one_go() {
+        let name = format!("gyro {}deg s x", "q ".repeat(500_000));
+        let name = Name::new(name.as_bytes());
+        assert_eq!(name.meaning(None), Column::Rate(0));
+        assert_eq!(name.unit.as_deref(), Some("deg/s"));
+    }
 }
