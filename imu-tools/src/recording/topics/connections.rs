@@ -1,5 +1,7 @@
 //! What a recording has: its connections, the messages of each, and how they are listed.
 
+use std::collections::HashSet;
+
 /// Topics listed in an error, at most.
 const LISTED: usize = 40;
 
@@ -34,7 +36,11 @@ pub struct Connection {
 
 /// `imu` and `/imu` are the same topic.
 pub fn same(a: &str, b: &str) -> bool {
-    a.trim_start_matches('/') == b.trim_start_matches('/')
+    bare(a) == bare(b)
+}
+
+fn bare(topic: &str) -> &str {
+    topic.trim_start_matches('/')
 }
 
 /// All that the recording has described so far.
@@ -91,32 +97,44 @@ impl Connections {
 
     /// The names of topics, each once, in the order of the recording.
     pub fn names(&self, which: impl Fn(&Connection) -> bool) -> Vec<&str> {
-        let mut names: Vec<&str> = Vec::new();
-        for connection in self.all.iter().filter(|c| which(c)) {
-            if !names.iter().any(|name| same(name, &connection.topic)) {
-                names.push(&connection.topic);
-            }
-        }
-        names
+        let mut seen = HashSet::new();
+        let topics = self.all.iter().filter(|c| which(c)).map(|c| c.topic.as_str());
+        topics.filter(|topic| seen.insert(bare(topic))).collect()
     }
 
     /// The topics in words, each once.
     pub fn list(&self, which: impl Fn(&Connection) -> bool) -> String {
-        let mut listed: Vec<String> = Vec::new();
-        let mut more = 0;
-        for connection in self.all.iter().filter(|c| which(c)) {
-            let one = format!("{} ({})", connection.topic, connection.type_name);
-            if listed.contains(&one) {
-            } else if listed.len() < LISTED {
-                listed.push(one);
-            } else {
-                more += 1;
-            }
-        }
+        let mut seen = HashSet::new();
+        let topics = self.all.iter().filter(|c| which(c)).map(|c| (&c.topic, &c.type_name));
+        let mut topics = topics.filter(|topic| seen.insert(*topic));
+        let listed = topics.by_ref().take(LISTED).map(|(topic, kind)| format!("{topic} ({kind})"));
+        let listed: Vec<String> = listed.collect();
+        let more = topics.count();
         let mut list = listed.join(", ");
         if more > 0 {
             list.push_str(&format!(" and {more} more"));
         }
         list
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn topics_are_named_and_counted_once() {
+        let mut connections = Connections::default();
+        for number in 0..4 * 50 {
+            let slash = if number % 2 == 0 { "/" } else { "" };
+            let topic = format!("{slash}{}", number / 2 % 50);
+            let type_name = "a".to_owned();
+            connections.add(Connection { number, topic, type_name, holds: Holds::Imu });
+        }
+        let names = connections.names(|_| true);
+        assert_eq!((names.len(), &names[..3]), (50, &["/0", "/1", "/2"][..]));
+        let list = connections.list(|_| true);
+        assert!(list.starts_with("/0 (a), 0 (a), /1 (a), "), "{list}");
+        assert!(list.ends_with(", 19 (a) and 60 more"), "{list}");
     }
 }

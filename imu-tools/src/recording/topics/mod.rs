@@ -200,10 +200,12 @@ impl Topics {
             let Connection { number, topic, .. } = connection;
             let gyroscope = is(topic, &wanted.gyroscope);
             let accelerometer = is(topic, &wanted.accelerometer);
+            if !gyroscope && !accelerometer {
+                continue;
+            }
             // A topic may carry two types of messages, of which one is meant.
             let other = |c: &Connection| c.holds == Holds::Imu && same(&c.topic, topic);
-            let meant = connection.holds != Holds::Other || !connections.iter().any(other);
-            if !meant || (!gyroscope && !accelerometer) {
+            if connection.holds == Holds::Other && connections.iter().any(other) {
                 continue;
             }
             check(connection, path)?;
