@@ -13,6 +13,10 @@ const PASSES: usize = 3;
 /// Jitter (rms, periods) from which on stamps are often not in their place.
 const COARSE: f64 = 0.3;
 
+/// No period is shorter, in ns: of stamps that go back and forth a line has no more slope than its
+/// rounding errors.
+const SHORTEST: f64 = 1.0;
+
 /// Fits the grid to the first samples; `None` where no two stamps differ.
 ///
 /// A rough period tells which samples are consecutive; a line through their stamps, by least
@@ -21,13 +25,14 @@ const COARSE: f64 = 0.3;
 pub fn grid(samples: &[Sample]) -> Option<Grid> {
     let first = samples.first()?;
     let origin = first.stamp_ns;
-    let Rough { mut period, jitter } = rough(samples)?;
+    let Rough { period, jitter } = rough(samples)?;
+    let mut period = period.max(SHORTEST);
     let in_place = if jitter < COARSE * period { 1.0 } else { 0.0 };
     let mut points = Vec::new();
     for _ in 0..PASSES {
         points = index(samples, Grid::new(origin, period, 0.0, jitter * jitter, in_place), period);
         let longest = points.chunk_by(|a, b| a.stretch == b.stretch).max_by_key(|s| s.len())?;
-        if let Some((_, fitted)) = line(longest).filter(|(_, fitted)| *fitted > 0.0) {
+        if let Some((_, fitted)) = line(longest).filter(|(_, fitted)| *fitted >= SHORTEST) {
             period = fitted;
         }
     }

@@ -429,3 +429,25 @@ fn most_samples_lost() {
         assert_rate(&outcome, 1e-9);
     }
 }
+
+/// Stamps that go back and forth by more than they go on: a line through them is flat, and is not to
+/// be taken for billions of samples a nanosecond.
+#[test]
+fn stamps_without_a_rate_get_a_possible_one() {
+    let (far, farther) = (5_032_820_502_762_703_307, 6_651_262_939_525_212_660);
+    for stamps in [
+        &[3, 3, 0, 2, 3, 3, 2, far + 5, far + 2, far, far][..],
+        &[3, 0, 4, 2, 2, farther, farther + 4],
+        &[-7_453_879_827_220, 1, 2, 1_261_240_077_690, 4, -1_067_010_223_227, 6],
+    ] {
+        let samples: Vec<Sample> = (0..)
+            .zip(stamps)
+            .map(|(i, &stamp_ns)| Sample { stamp_ns, value: [f64::from(i); 3] })
+            .collect();
+        let mut timeline = Timeline::new();
+        timeline.push(&samples, |_| {});
+        let summary = timeline.finish(|_| {});
+        assert!(summary.rate_hz <= 2e9, "{summary:?}");
+        assert_eq!(summary.samples, samples.len() as u64);
+    }
+}
