@@ -194,7 +194,7 @@ impl Channel {
         match self.readings {
             Readings::Fifo { samples, .. } => {
                 let samples = samples.read(message).unwrap_or(0.0) as u64;
-                if samples > MOST as u64 { 0 } else { samples }
+                if samples > LONGEST_BATCH as u64 { 0 } else { samples }
             }
             _ => 1,
         }
