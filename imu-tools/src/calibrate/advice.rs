@@ -1,14 +1,22 @@
 //! What the user of a calibration should know before believing it, in sentences.
 
-use imu_core::allan::Parameter;
+use imu_core::allan::{Octave, Parameter};
 
-use super::{SensorNoise, Stretch};
+use super::{Deviation, SensorNoise, Stretch};
 use crate::recording::Summary;
 use crate::scene::display_duration;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Stretches that a sentence names, at most.
 const NAMED: usize = 4;
+
+/// No sensor warms up in less, s.
+const SHORT_S: f64 = 20.0;
+/// Short τ that contradict longer ones are those of motion where the sensor goes so many times as far
+/// as the noise of the longer ones.
+const MOTION: f64 = 2.0;
+/// Differences from which on a deviation is known well enough for that.
+const KNOWN: u64 = 64;
 
 /// What is wrong with a sensor, its recording or its result; `keep_all` says that nothing was left
 /// out.
@@ -24,20 +32,20 @@ pub(super) fn warnings(sensor: &SensorNoise, keep_all: bool) -> Vec<String> {
 
 /// Where the sensor was not at rest, or not warm.
 fn of_rest(to: &mut Vec<String>, sensor: &SensorNoise, keep_all: bool) {
-    if !sensor.disturbed.is_empty() {
-        let total: f64 = sensor.disturbed.iter().map(|s| s.to_s - s.from_s).sum();
-        let named: Vec<String> = sensor.disturbed.iter().take(NAMED).map(stretch).collect();
-        let more = sensor.disturbed.len().saturating_sub(NAMED);
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    of_frozen(to, sensor, keep_all);
+    let frozen = |s: &&Stretch| sensor.checks.frozen.iter().any(|(_, frozen)| frozen == *s);
+    let moved: Vec<Stretch> = sensor.disturbed.iter().filter(|s| !frozen(s)).copied().collect();
+    if !moved.is_empty() {
+        let total: f64 = moved.iter().map(|s| s.to_s - s.from_s).sum();
         let what = if keep_all {
             "kept, because --keep-all is given: N and K are those of the motion"
         } else {
             "left out (--keep-all would keep it)"
         };
         to.push(format!(
-            "moved, touched or shaken for {} in all ({}{more}): {what}",
+            "moved, touched or shaken for {} in all ({}): {what}",
             seconds(total),
-            named.join(", ")
+            named(&moved)
         ));
     }
     if let Some(warm_up_s) = sensor.warm_up_s {
@@ -46,10 +54,15 @@ fn of_rest(to: &mut Vec<String>, sensor: &SensorNoise, keep_all: bool) {
         } else {
             "they decide nothing about K (--keep-all would let them)"
         };
-        to.push(format!(
-            "the first {} drift as a sensor does that warms up: {what}",
-            seconds(warm_up_s)
-        ));
+        let (length, how) = if warm_up_s < SHORT_S {
+            (
+                format!("{warm_up_s:.1} s"),
+                "go further than the noise of the rest does (the sensor settles, or is moved)",
+            )
+        } else {
+            (seconds(warm_up_s), "drift as a sensor does that warms up")
+        };
+        to.push(format!("the first {length} {how}: {what}"));
     }
     if let Some(slope) = sensor.ramp {
         let unit = sensor.kind.unit();
@@ -66,15 +79,56 @@ fn of_rest(to: &mut Vec<String>, sensor: &SensorNoise, keep_all: bool) {
     }
 }
 
+/// Where an axis stood still that otherwise never does.
+fn of_frozen(to: &mut Vec<String>, sensor: &SensorNoise, keep_all: bool) {
+    let what = if keep_all {
+        "kept, because --keep-all is given: N is too small and K too large"
+    } else {
+        "left out (--keep-all would keep it)"
+    };
+    let mut kinds: Vec<[bool; 3]> = Vec::new();
+    for (axes, _) in &sensor.checks.frozen {
+        if !kinds.contains(axes) {
+            kinds.push(*axes);
+        }
+    }
+    for kind in kinds {
+        let of_kind = sensor.checks.frozen.iter().filter(|(axes, _)| *axes == kind);
+        let stretches: Vec<Stretch> = of_kind.map(|(_, stretch)| *stretch).collect();
+        let axes: Vec<&str> = AXES
+            .into_iter()
+            .zip(kind)
+            .filter(|(_, frozen)| *frozen)
+            .map(|(axis, _)| axis)
+            .collect();
+        let who = match axes.as_slice() {
+            [axis] => format!("axis {axis}"),
+            [first, second] => format!("axes {first} and {second}"),
+            _ => "all axes".into(),
+        };
+        to.push(format!(
+            "{who} stood still ({}), as a sensor or a driver does that hangs: {what}",
+            named(&stretches)
+        ));
+    }
+}
+
 /// What the fit says.
 fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
     if let Some(contradiction) = sensor.contradiction {
         let longest = sensor.deviation.get(contradiction.octave).map_or(0.0, |d| d.tau_s);
-        to.push(format!(
+        let sigmas = contradiction.sigmas;
+        let decide = format!(
             "averaging times up to {longest:.3} s decide nothing: they contradict the longer ones by \
-             {:.0} standard deviations, as a low-pass filter or a vibration makes them do",
-            contradiction.sigmas
-        ));
+             {sigmas:.0} standard deviations"
+        );
+        to.push(match motion(sensor, contradiction.octave) {
+            Some((times, tau_s)) => format!(
+                "moved or shaken all the time: at τ = {tau_s:.2} s it goes {times:.1} times as far as \
+                 white noise that is as large at longer τ; {decide}; record it at rest"
+            ),
+            None => format!("{decide}, as a low-pass filter or a vibration makes them do"),
+        });
     }
     for (axis, _) in AXES.iter().zip(sensor.misfit).filter(|(_, misfit)| *misfit) {
         to.push(format!(
@@ -97,6 +151,24 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
             seconds(record_at_least_s)
         ));
     }
+}
+
+/// How many times as far the axes go at a τ, up to that of `octave`, as white noise would that goes as far
+/// as they do at some longer τ; and that τ, s. A swing averages out faster than noise does, while behind
+/// a low-pass filter noise averages out more slowly.
+fn motion(sensor: &SensorNoise, octave: usize) -> Option<(f64, f64)> {
+    let far = |deviation: &Deviation| {
+        let square = |axis: &Octave| axis.deviation() * axis.deviation();
+        (deviation.octaves.iter().map(square).sum::<f64>() / 3.0 * deviation.tau_s).sqrt()
+    };
+    let known =
+        |deviation: &&Deviation| deviation.octaves.iter().all(|axis| axis.differences >= KNOWN);
+    // The shortest τ is that of steps and of noise that is not white, too.
+    let short = sensor.deviation.iter().take(octave + 1).enumerate().skip(1);
+    let (peak, most) = short.max_by(|a, b| far(a.1).total_cmp(&far(b.1)))?;
+    let longer = sensor.deviation.iter().skip(peak + 1).take_while(known).map(far);
+    let times = far(most) / longer.min_by(f64::total_cmp)?;
+    (times > MOTION).then_some((times, most.tau_s))
 }
 
 /// What sensor and driver did to the values.
@@ -135,11 +207,15 @@ fn of_values(to: &mut Vec<String>, sensor: &SensorNoise) {
     }
     let samples = sensor.stamps.samples;
     if checks.is_held(samples) {
+        // A longer run is a sensor that hangs.
+        let row = match checks.longest_hold {
+            longest @ ..64 => format!(", up to {longest} in a row"),
+            _ => String::new(),
+        };
         to.push(format!(
-            "{:.0} % of the samples repeat the one before, up to {} in a row: the driver publishes \
-             faster than the sensor measures, and N is not that of the sensor; record at its own rate",
+            "{:.0} % of the samples repeat the one before{row}: the driver publishes faster than the \
+             sensor measures, and N is not that of the sensor; record at its own rate",
             100.0 * checks.held as f64 / samples.max(1) as f64,
-            checks.longest_hold
         ));
     }
 }
@@ -203,6 +279,14 @@ fn spread_of_axes(sensor: &SensorNoise) -> Option<f64> {
     (most >= 2.0 * least).then(|| most / least)
 }
 
+/// The first few of some stretches, and how many more there are.
+fn named(stretches: &[Stretch]) -> String {
+    let named: Vec<String> = stretches.iter().take(NAMED).map(stretch).collect();
+    let more = stretches.len().saturating_sub(NAMED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("{}{more}", named.join(", "))
+}
+
 fn stretch(stretch: &Stretch) -> String {
     format!("{:.0} to {:.0} s", stretch.from_s, stretch.to_s)
 }
@@ -210,3 +294,7 @@ fn stretch(stretch: &Stretch) -> String {
 fn seconds(seconds: f64) -> String {
     display_duration((seconds.clamp(0.0, 1e9).round() * 1e9) as u64)
 }
+
+#[cfg(test)]
+#[path = "advice_tests.rs"]
+mod tests;

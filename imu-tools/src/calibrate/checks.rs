@@ -5,14 +5,19 @@
 //!   a row, several times as often as it returns to its middle: noise does not do that, a full scale
 //!   does.
 //! - **Held**: all three axes at once are what they were, far more often than their steps explain: a
-//!   driver that publishes faster than the sensor measures, and repeats the last reading.
+//!   driver that publishes faster than the sensor measures, and repeats the last reading. Runs of
+//!   [`LONG`] and more are not a driver's: there the sensor, or what reads it, hangs.
 //! - **Coarse**: values lie on a grid. Its step is the smallest difference of the first
 //!   [`FIRST`] values, if all others are multiples of it.
+
+use super::Stretch;
 
 /// Values that show the step of the grid.
 const FIRST: usize = 4096;
 /// Equal values in a row at an end of the range that noise does not make.
 const FLAT: u32 = 4;
+/// Equal samples in a row that are no repeated reading any more.
+const LONG: u64 = 64;
 /// Held samples are told of when they are more than this part.
 const HELD: f64 = 0.02;
 
@@ -27,8 +32,16 @@ pub struct Checks {
     pub saturated: [u64; 3],
     /// An axis that never changes.
     pub stuck: [bool; 3],
-    /// Samples that repeat the one before on all axes, beyond what the steps explain.
+    /// Stretches in which an axis stood still that otherwise never does, and which ones did. They are among
+    /// [`SensorNoise::disturbed`](super::SensorNoise::disturbed).
+    pub frozen: Vec<([bool; 3], Stretch)>,
+    /// Samples that repeat the one before on all axes, beyond what the steps explain, and not in runs of
+    /// 64 and more.
     pub held: u64,
+    /// The part of the first samples that are 0 on all axes.
+    pub zeros: f64,
+    /// Samples that are not finite, such as empty fields.
+    pub not_finite: u64,
     /// The longest run of equal samples.
     pub longest_hold: u64,
 }
@@ -81,6 +94,9 @@ pub(super) struct Checker {
     all_same: u64,
     run: u64,
     longest: u64,
+    /// Samples that repeat the one before in long runs.
+    hung: u64,
+    not_finite: u64,
     first: Vec<[f64; 3]>,
 }
 
@@ -96,6 +112,8 @@ impl Checker {
             all_same: 0,
             run: 1,
             longest: 1,
+            hung: 0,
+            not_finite: 0,
             first: Vec::new(),
         }
     }
@@ -108,6 +126,8 @@ impl Checker {
         for value in values {
             if (value[0] + value[1] + value[2]).is_finite() {
                 self.take_one(value);
+            } else {
+                self.not_finite += 1;
             }
         }
     }
@@ -159,6 +179,11 @@ impl Checker {
         if all {
             self.all_same += 1;
             self.run += 1;
+            self.hung += match self.run {
+                LONG => LONG - 1,
+                run if run > LONG => 1,
+                _ => 0,
+            };
             self.longest = self.longest.max(self.run);
         } else {
             self.run = 1;
@@ -174,7 +199,7 @@ impl Checker {
         if self.samples == 0 {
             return checks;
         }
-        let pairs = (self.samples - 1).max(1) as f64;
+        let pairs = (self.samples - 1 - self.hung).max(1) as f64;
         let mut live = Vec::new();
         for axis in 0..3 {
             let (low, high) = (self.low[axis], self.high[axis]);
@@ -186,11 +211,15 @@ impl Checker {
                 let between = (self.samples - flat).max(1) as f64;
                 let often = self.same[axis].saturating_sub(flat) as f64 / between > 0.25;
                 checks.saturated[axis] = if often { 0 } else { flat };
-                live.push(self.same[axis] as f64 / pairs);
+                live.push((self.same[axis] - self.hung) as f64 / pairs);
             }
             checks.step[axis] = step(self.first.iter().map(|value| value[axis]));
         }
-        checks.held = (held(&live, self.all_same as f64 / pairs) * pairs).round() as u64;
+        let all_same = (self.all_same - self.hung) as f64;
+        checks.held = (held(&live, all_same / pairs) * pairs).round() as u64;
+        checks.zeros = self.first.iter().filter(|value| **value == [0.0; 3]).count() as f64
+            / self.first.len().max(1) as f64;
+        checks.not_finite = self.not_finite;
         checks
     }
 }
@@ -307,5 +336,18 @@ mod tests {
         assert_eq!(checks.longest_hold, 2);
         let stuck: Vec<_> = noise(5_000, 5).iter().map(|v| [v[0], v[1], 0.0]).collect();
         assert_eq!((check(&stuck).stuck, check(&stuck).held), ([false, false, true], 0));
+    }
+
+    /// Half of the record is one reading: no driver publishes that fast.
+    #[test]
+    fn a_sensor_that_hangs_is_not_held() {
+        let mut values = noise(20_000, 6);
+        let last = values[9_999];
+        values[10_000..].fill(last);
+        let checks = check(&values);
+        assert_eq!((checks.held, checks.longest_hold), (0, 10_001));
+        let both: Vec<_> = values.iter().flat_map(|v| [*v, *v]).collect();
+        let held = check(&both).held;
+        assert!((9_990..=10_010).contains(&held), "{held}");
     }
 }

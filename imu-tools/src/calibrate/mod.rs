@@ -30,6 +30,7 @@ mod limits;
 pub mod maximum_likelihood;
 mod refusal;
 mod sensor;
+mod shifts;
 pub mod slope;
 mod stillness;
 mod taken;

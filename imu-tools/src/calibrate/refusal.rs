@@ -15,6 +15,24 @@ fn too_few(path: &str, samples: u64, options: &Options) -> Error {
     ))
 }
 
+/// What most of the samples are that were rejected, and what to do about it.
+fn of_rejected(sensor: &SensorNoise) -> String {
+    let checks = &sensor.checks;
+    let zeros = 100.0 * checks.zeros;
+    if 2 * checks.not_finite > sensor.rejected {
+        "are not finite (empty fields, NaN or infinite on an axis): take such rows out of the recording".into()
+    } else if zeros > 5.0 {
+        format!(
+            "are far from the others, {zeros:.0} % of the first ones being 0 on all axes, as a driver \
+             writes that has no new reading: take such rows out of the recording"
+        )
+    } else {
+        "are far beyond what its first ones show; if those are not of rest, leave them out with \
+         --from, else mend the recording"
+            .into()
+    }
+}
+
 /// Why samples or stamps of a recording are not fit, if they are not.
 pub(super) fn of_samples(
     path: &str,
@@ -37,9 +55,10 @@ pub(super) fn of_samples(
         }
         if sensor.rejected * 10 > sensor.stamps.samples {
             return Some(Error::data(format!(
-                "{path}: {} of {} samples of the {name} are not finite or far beyond what its first ones \
-                 show; leave out its beginning with --from, or mend the recording",
-                sensor.rejected, sensor.stamps.samples
+                "{path}: {} of {} samples of the {name} {}",
+                sensor.rejected,
+                sensor.stamps.samples,
+                of_rejected(sensor)
             )));
         }
         None

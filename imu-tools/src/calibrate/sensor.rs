@@ -111,6 +111,12 @@ impl Pipeline {
             .map(|s| Stretch { from_s: seconds(s.from), to_s: seconds(s.to) })
             .collect();
         noise.checks = checker.finish();
+        noise.checks.frozen = disturbed
+            .iter()
+            .zip(&noise.disturbed)
+            .filter(|(stretch, _)| stretch.frozen.contains(&true))
+            .map(|(stretch, told)| (stretch.frozen, *told))
+            .collect();
         noise.signal = envelope.map_or_else(Vec::new, |envelope| envelope.finish(tau0_s));
         noise.record_means = taken
             .records

@@ -6,18 +6,22 @@
 //! the steps between neighbouring means, both from the lower quartile of the last [`RING`] windows,
 //! so that they stay right while up to two thirds of those are disturbed. A window beyond
 //! [`BEYOND`] spreads is disturbed, and so are eight in a row whose average is (a weak, long
-//! vibration); with each go its two neighbours.
+//! vibration); with each go its two neighbours. So does a window in which an axis stands still that
+//! otherwise never does: a sensor or a driver that hangs. Averages of more windows show a small change
+//! that lasts ([`Shifts`]).
 //!
 //! What is disturbed becomes missing time, which costs the longer averaging times next to nothing.
 //! But a sensor that was moved stands otherwise than before, and shows another part of gravity: if
 //! the means after the stretch are not those before it, no difference may span it, and it becomes a
 //! restart.
 //!
-//! Memory: the first [`START`] windows are held back, of 2048 samples at most, then some 40.
+//! Memory: the first [`START`] windows are held back, of 2048 samples at most, then some 50, and 40 more
+//! after a disturbed stretch.
 
 use std::collections::VecDeque;
 
 use super::limits::Limits;
+use super::shifts::Shifts;
 use super::usual::{Usual, WindowStatistics};
 use crate::recording::Event;
 
@@ -36,6 +40,8 @@ pub(super) const BEYOND: f64 = 8.0;
 pub(super) const GROUP: usize = 8;
 /// A window waits for so many after it: a group may still condemn it, or its neighbour.
 const WAIT: usize = GROUP + 2;
+/// A window with a hole of so many is no neighbour of the others.
+const FAR: u64 = 8;
 /// Windows on either side of a disturbed stretch whose means are compared.
 const LEVEL: usize = 32;
 /// Fewer do not show a level.
@@ -48,6 +54,8 @@ const LISTED: usize = 1000;
 pub(super) struct Stretch {
     pub(super) from: u64,
     pub(super) to: u64,
+    /// The axes that stood still in it.
+    pub(super) frozen: [bool; 3],
 }
 
 /// What a window holds, in order.
@@ -69,11 +77,29 @@ struct Window {
     /// `None` where too few samples are there.
     statistics: Option<WindowStatistics>,
     disturbed: bool,
+    /// The axes that stand still in it.
+    frozen: [bool; 3],
+    /// The sensor stands otherwise from here on.
+    shifts: bool,
 }
 
 impl Window {
     fn is_empty(&self) -> bool {
         self.pieces.is_empty()
+    }
+
+    fn is_frozen(&self) -> bool {
+        self.frozen.contains(&true)
+    }
+
+    /// Its mean, where it is at rest and no hole of `far` instants is in it.
+    fn neighbour(&self, far: u64) -> Option<[f64; 3]> {
+        let statistics = self.statistics.filter(|_| !self.disturbed && self.length <= far)?;
+        Some(statistics.mean)
+    }
+
+    fn restarts(&self) -> bool {
+        self.pieces.iter().any(|piece| matches!(piece, Piece::Restart))
     }
 
     /// Tells all that it holds.
@@ -111,6 +137,13 @@ pub(super) struct Stillness {
     usual: Usual,
     judged: bool,
     windows: u64,
+    shifts: Shifts,
+    /// How many of those that wait were shown to `shifts`, and how many were examined by it.
+    shown: usize,
+    examined: usize,
+    /// The number of the first that waits, and of the last one with a mean that was examined.
+    first: u64,
+    last_mean: u64,
     /// The window after a disturbed one goes with it.
     follows: bool,
     /// Means of the last windows that were passed on.
@@ -135,6 +168,11 @@ impl Stillness {
             usual: Usual::default(),
             judged: false,
             windows: 0,
+            shifts: Shifts::default(),
+            shown: 0,
+            examined: 0,
+            first: 0,
+            last_mean: 0,
             follows: false,
             before: VecDeque::new(),
             left_out: None,
@@ -214,9 +252,12 @@ impl Stillness {
             .limits
             .and_then(|limits| WindowStatistics::of(&window.values, self.window, &limits));
         if let Some(statistics) = window.statistics {
-            let apart = window.pieces.iter().any(|piece| matches!(piece, Piece::Restart));
-            self.usual.push(statistics, apart);
-            self.windows += 1;
+            window.frozen = self.usual.frozen(&statistics);
+            if !window.is_frozen() {
+                let hung = self.waiting.back().is_some_and(Window::is_frozen);
+                self.usual.push(statistics, hung || window.restarts());
+                self.windows += 1;
+            }
         }
         self.waiting.push_back(window);
         if self.judged {
@@ -234,14 +275,82 @@ impl Stillness {
     fn judge_all(&mut self) {
         self.judged = true;
         self.usual.learn();
-        let waiting = std::mem::take(&mut self.waiting);
-        self.usual.rewind(waiting.iter().filter(|window| window.statistics.is_some()).count());
+        let mut waiting = std::mem::take(&mut self.waiting);
+        let mut hung = false;
+        self.usual.forget();
+        for window in &mut waiting {
+            let Some(statistics) = window.statistics else { continue };
+            window.frozen = self.usual.frozen(&statistics);
+            if !window.is_frozen() {
+                self.usual.push(statistics, hung || window.restarts());
+            }
+            hung = window.is_frozen();
+        }
+        self.usual.learn();
+        self.usual.rewind(self.usual.len());
         for window in waiting {
-            if window.statistics.is_some() {
+            if window.statistics.is_some() && !window.is_frozen() {
                 self.usual.step();
             }
             self.waiting.push_back(window);
             self.judge_last();
+        }
+        self.show(WAIT);
+        self.shifts.learn(self.usual.steps());
+    }
+
+    /// Shows all but the last `wait` windows to what finds shifts.
+    fn show(&mut self, wait: usize) {
+        let (steps, far) = (self.usual.steps(), FAR * self.window as u64);
+        let until = self.waiting.len().saturating_sub(wait);
+        for window in self.waiting.iter().take(until).skip(self.shown) {
+            let mean = window.neighbour(far);
+            if window.disturbed || window.length > far || window.restarts() {
+                self.shifts.show_break();
+            }
+            if let Some(mean) = mean {
+                self.shifts.show(mean, steps);
+            }
+        }
+        self.shown = self.shown.max(until);
+    }
+
+    /// Looks for shifts in all but the last `wait` windows.
+    fn examine(&mut self, wait: usize) {
+        self.show(wait);
+        let far = FAR * self.window as u64;
+        while self.examined + wait < self.waiting.len() {
+            let Some(window) = self.waiting.get(self.examined) else { return };
+            let number = self.first + self.examined as u64;
+            self.examined += 1;
+            let mean = window.neighbour(far);
+            let hole = window.length > far || number > self.last_mean + FAR;
+            if window.disturbed || hole || window.restarts() {
+                self.end_stretch();
+            }
+            if let Some(mean) = mean {
+                self.last_mean = number;
+                let found = self.shifts.push(number, mean);
+                self.leave_out_shift(found);
+            }
+        }
+    }
+
+    /// The next window is no neighbour of those before it.
+    fn end_stretch(&mut self) {
+        for found in self.shifts.end_stretch() {
+            self.leave_out_shift(Some(found));
+        }
+    }
+
+    /// The windows in which the sensor goes from one level to another are not at rest.
+    fn leave_out_shift(&mut self, found: Option<(u64, u64)>) {
+        let Some((from, to)) = found else { return };
+        for (number, window) in (self.first..).zip(&mut self.waiting) {
+            if (from..=to).contains(&number) {
+                window.disturbed = true;
+                window.shifts = true;
+            }
         }
     }
 
@@ -249,8 +358,9 @@ impl Stillness {
     fn judge_last(&mut self) {
         let last = self.waiting.len() - 1;
         let has = self.waiting.back().is_some_and(|window| window.statistics.is_some());
-        let alone = has && self.usual.last_is_disturbed();
-        let group = has && self.usual.group_is_disturbed();
+        let frozen = self.waiting.back().is_some_and(Window::is_frozen);
+        let alone = frozen || (has && self.usual.last_is_disturbed());
+        let group = has && !frozen && self.usual.group_is_disturbed();
         let from = if group {
             last.saturating_sub(GROUP)
         } else if alone {
@@ -271,11 +381,18 @@ impl Stillness {
         if !self.judged && !at_end {
             return;
         }
-        let wait = if at_end { 0 } else { WAIT };
-        while self.waiting.len() > wait {
+        if self.judged {
+            self.examine(if at_end { 0 } else { WAIT });
+            if at_end {
+                self.end_stretch();
+            }
+        }
+        let held = self.shifts.holds().map(|number| number.saturating_sub(self.first) as usize);
+        let examined = if at_end { self.waiting.len() } else { self.examined };
+        let mut ready = held.unwrap_or(examined).min(examined);
+        while ready > 0 {
             let disturbed = self.waiting.front().is_some_and(|window| window.disturbed);
             if !disturbed && let Some(gap) = self.left_out {
-                let ready = self.waiting.len() - wait;
                 let still = self.waiting.iter().take(ready).take_while(|w| !w.disturbed).count();
                 if still == ready && still < LEVEL && !at_end {
                     return;
@@ -283,6 +400,10 @@ impl Stillness {
                 self.bridge(gap, still, to);
             }
             let Some(window) = self.waiting.pop_front() else { return };
+            ready -= 1;
+            self.first += 1;
+            self.shown = self.shown.saturating_sub(1);
+            self.examined = self.examined.saturating_sub(1);
             if disturbed {
                 self.leave_out(&window, to);
             } else {
@@ -300,10 +421,14 @@ impl Stillness {
 
     /// Time passes in which the sensor was not at rest.
     fn leave_out(&mut self, window: &Window, to: &mut impl FnMut(Event<'_>)) {
-        let stretch = Stretch { from: window.start, to: window.start + window.length };
+        let (from, frozen) = (window.start, window.frozen);
+        let stretch = Stretch { from, to: from + window.length, frozen };
         let room = self.stretches.len() < LISTED;
         match self.stretches.last_mut() {
-            Some(last) if last.to == stretch.from => last.to = stretch.to,
+            Some(last) if last.to == stretch.from => {
+                last.to = stretch.to;
+                last.frozen = [0, 1, 2].map(|axis| last.frozen[axis] | frozen[axis]);
+            }
             _ if room => self.stretches.push(stretch),
             _ => {}
         }
@@ -311,7 +436,7 @@ impl Stillness {
             window.tell(to);
             return;
         }
-        self.restarted |= window.pieces.iter().any(|piece| matches!(piece, Piece::Restart));
+        self.restarted |= window.shifts || window.restarts();
         *self.left_out.get_or_insert(0) += window.length;
     }
 
@@ -344,6 +469,8 @@ impl Stillness {
             window.length = 0;
             window.statistics = None;
             window.disturbed = false;
+            window.frozen = [false; 3];
+            window.shifts = false;
             self.spare.push(window);
         }
     }

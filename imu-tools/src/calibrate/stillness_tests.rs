@@ -164,3 +164,102 @@ fn a_coarse_signal_is_not_judged() {
         (0..50_000).map(|k| [0.0, f64::from(u8::from(k % 777 == 0)), 9.8]).collect();
     assert!(run(&[Event::Values(&values)], false).stretches.is_empty());
 }
+
+/// Half of the record is one reading on one axis: time that is left out, with the window before it.
+#[test]
+fn an_axis_that_freezes_is_left_out() {
+    let mut values = noise(1000 * RATE);
+    let last = values[49_999][1];
+    values[50_000..].iter_mut().for_each(|value| value[1] = last);
+    let outcome = run(&[Event::Values(&values)], false);
+    let [frozen] = outcome.stretches[..] else { panic!("{:?}", outcome.stretches) };
+    assert_eq!((frozen.frozen, frozen.to), ([false, true, false], 100_000));
+    assert!((49_500..=50_000).contains(&frozen.from), "{frozen:?}");
+    assert_eq!(outcome.values as u64, frozen.from);
+    let kept = run(&[Event::Values(&values)], true);
+    assert_eq!((kept.values, kept.stretches.len()), (values.len(), 1));
+}
+
+/// A driver that hangs for ten seconds, among the first windows and after them.
+#[test]
+fn a_sensor_that_freezes_for_a_while_becomes_missing_time() {
+    for at in [100, 700] {
+        let mut values = noise(1000 * RATE);
+        let last = values[at * RATE];
+        values[at * RATE..(at + 10) * RATE].fill(last);
+        let outcome = run(&[Event::Values(&values)], false);
+        let [frozen] = outcome.stretches[..] else { panic!("{:?}", outcome.stretches) };
+        assert_eq!(frozen.frozen, [true; 3]);
+        let near = 3 * window(RATE as f64) as u64;
+        let (from, to) = ((at * RATE) as u64, ((at + 10) * RATE) as u64);
+        assert!((from - near..=from).contains(&frozen.from), "{frozen:?}");
+        assert!((to..=to + near).contains(&frozen.to), "{frozen:?}");
+        assert_eq!(outcome.values as u64 + frozen.to - frozen.from, 100_000);
+    }
+}
+
+/// Equal values in long rows that are natural: noise of a fifth of the resolution on a mean that
+/// wanders over some steps of it, integers of small noise, a stuck axis, readings that are held.
+#[test]
+fn coarse_and_held_values_are_not_frozen() {
+    let noise = noise(2000 * RATE);
+    let coarse: Vec<[f64; 3]> = noise
+        .iter()
+        .enumerate()
+        .map(|(k, value)| {
+            let wander = 2.0 * (k as f64 * 5e-5).sin();
+            [(0.2 * value[0] + wander).round(), (0.7 * value[1] + wander).round(), 9.8]
+        })
+        .collect();
+    for held in [1, 2, 5, 8] {
+        let values: Vec<[f64; 3]> =
+            coarse.iter().step_by(held).flat_map(|value| vec![*value; held]).collect();
+        let outcome = run(&[Event::Values(&values)], false);
+        let frozen = outcome.stretches.iter().filter(|stretch| stretch.frozen != [false; 3]);
+        assert_eq!(frozen.count(), 0, "held {held}: {:?}", outcome.stretches);
+    }
+    for held in [2, 8] {
+        let values: Vec<[f64; 3]> =
+            noise.iter().step_by(held).flat_map(|value| vec![*value; held]).collect();
+        assert!(run(&[Event::Values(&values)], false).stretches.is_empty());
+    }
+}
+
+/// Small steps that last, of 5 to 14 standard deviations of a window's mean, in the middle of a window
+/// or over three seconds: a restart, and little else is left out.
+#[test]
+fn a_small_tilt_is_a_restart() {
+    let size = window(RATE as f64);
+    let sd = 1.0 / (size as f64).sqrt();
+    for (step, over) in [(5.0, 0), (9.0, 0), (14.0, 0), (14.0, 3 * RATE), (6.0, 3 * RATE)] {
+        let mut values = noise(2000 * RATE);
+        let at = 700 * size + size / 2;
+        for (k, value) in values.iter_mut().enumerate() {
+            let part = (k.saturating_sub(at) as f64 / over.max(1) as f64).min(1.0);
+            value[2] += step * sd * part;
+        }
+        let outcome = run(&[Event::Values(&values)], false);
+        let [tilt] = outcome.stretches[..] else { panic!("{step}: {:?}", outcome.stretches) };
+        let place = at as u64..=(at + over) as u64;
+        let near = 2 * size as u64;
+        assert!(
+            tilt.from <= place.end() + near && tilt.to + near >= *place.start(),
+            "{step}: {tilt:?}"
+        );
+        assert!(tilt.to - tilt.from <= 8 * size as u64, "{step}: {tilt:?}");
+        assert_eq!((outcome.missing, outcome.restarts), (0, 1), "{step}");
+        assert_eq!(outcome.values as u64 + tilt.to - tilt.from, 200_000);
+    }
+}
+
+/// A sensor that warms up goes far, and is nowhere cut.
+#[test]
+fn a_warm_up_is_no_shift() {
+    let sd = 1.0 / (window(RATE as f64) as f64).sqrt();
+    for minutes in [2.0, 5.0, 10.0] {
+        let mut values = noise(3000 * RATE);
+        during(&mut values, 0..3000, |t| 60.0 * sd * (1.0 - (-t / (60.0 * minutes)).exp()));
+        let outcome = run(&[Event::Values(&values)], false);
+        assert!(outcome.stretches.is_empty(), "{minutes}: {:?}", outcome.stretches);
+    }
+}

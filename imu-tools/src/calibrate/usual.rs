@@ -4,6 +4,10 @@
 //! Both from quantiles in the lower half, where disturbances are not: for a Gaussian quantity the
 //! quantiles at 5 % and 25 % are 1.645 and 0.674 standard deviations below the mean, and the
 //! quartile of its absolute value, when the mean is zero, is 0.319 standard deviations.
+//!
+//! An axis is *lively* if it takes [`VALUES`] different values and more in a window, as one does whose
+//! noise is half of its resolution at least. Of such an axis equal values for a second are no accident.
+//! A coarser one may rest in the middle of a step for an hour, and then leave it.
 
 use std::collections::VecDeque;
 
@@ -20,6 +24,17 @@ const LEAST_RATIO: f64 = 1.5;
 /// Spreads from which on two levels are not the same. A restart where none was needed costs little,
 /// a step that is taken for random walk costs K.
 const OTHER_LEVEL: f64 = 3.5;
+/// Different values that are told apart.
+const VALUES: usize = 4;
+/// Lively windows that show a lively axis, at least; and one of so many.
+const FEWEST_LIVELY: usize = 16;
+const ONE_LIVELY_OF: usize = 8;
+/// Windows of two or three values, where an axis is lively: one of so many lively ones at most.
+const ONE_DULL_OF: usize = 16;
+/// Spread of the variance of lively windows, over that of white noise, that is not rest any more.
+const WIDE: f64 = 5.0;
+/// A variance so many times less than the usual is none.
+const STILL: f64 = 100.0;
 /// Pairs of levels that show what is usual of them, at least.
 const PAIRS: usize = 64;
 
@@ -28,6 +43,8 @@ const PAIRS: usize = 64;
 pub(super) struct WindowStatistics {
     pub(super) mean: [f64; 3],
     log_variance: [f64; 3],
+    /// Different values, [`VALUES`] at most.
+    values: [usize; 3],
     samples: usize,
 }
 
@@ -35,15 +52,15 @@ impl WindowStatistics {
     /// Of the samples within limits, if they are half of `full` at least.
     pub(super) fn of(values: &[[f64; 3]], full: usize, limits: &Limits) -> Option<Self> {
         let within = limits.hold_all(values);
-        let (origin, samples, sum, squares) = if within {
+        let (origin, samples, sum, squares, different) = if within {
             let origin = values.first()?;
             let (sum, squares) = moments(values.iter(), origin);
-            (origin, values.len(), sum, squares)
+            (origin, values.len(), sum, squares, different(|| values.iter()))
         } else {
             let within = || values.iter().filter(|value| limits.hold(value));
             let origin = within().next()?;
             let (sum, squares) = moments(within(), origin);
-            (origin, within().count(), sum, squares)
+            (origin, within().count(), sum, squares, different(within))
         };
         if samples < (full / 2).max(2) {
             return None;
@@ -54,8 +71,28 @@ impl WindowStatistics {
             let about = squares[axis] - sum[axis] * sum[axis] / count;
             (about / (count - 1.0)).max(f64::MIN_POSITIVE).ln()
         });
-        Some(Self { mean, log_variance, samples })
+        Some(Self { mean, log_variance, values: different, samples })
     }
+}
+
+/// How many different values each axis takes, [`VALUES`] at most: where there are many, the first few
+/// samples show them.
+fn different<'a, I: Iterator<Item = &'a [f64; 3]>>(values: impl Fn() -> I) -> [usize; 3] {
+    [0, 1, 2].map(|axis| {
+        let mut seen = [0.0; VALUES];
+        let mut count = 0;
+        for value in values() {
+            let x = value[axis];
+            if !seen.iter().take(count).any(|seen| *seen == x) {
+                seen[count] = x;
+                count += 1;
+                if count == VALUES {
+                    break;
+                }
+            }
+        }
+        count
+    })
 }
 
 /// Sums of the values less `origin`, and of their squares.
@@ -83,12 +120,14 @@ struct Axis {
     spread: f64,
     /// Spread of the difference of neighbouring means.
     step: f64,
+    /// Equal values for a window are no accident.
+    lively: bool,
 }
 
 impl Default for Axis {
     /// Nothing is unusual.
     fn default() -> Self {
-        Self { centre: f64::INFINITY, spread: 1.0, step: f64::INFINITY }
+        Self { centre: f64::INFINITY, spread: 1.0, step: f64::INFINITY, lively: false }
     }
 }
 
@@ -125,30 +164,73 @@ impl Usual {
         self.ring.get(index)
     }
 
+    /// Windows that say what is usual.
+    pub(super) fn len(&self) -> usize {
+        self.ring.len()
+    }
+
+    /// Forgets the windows, but not what is usual.
+    pub(super) fn forget(&mut self) {
+        self.ring.clear();
+    }
+
     /// Learns what is usual from all windows of the ring.
     pub(super) fn learn(&mut self) {
-        for axis in 0..3 {
-            let mut logs: Vec<f64> = self.ring.iter().map(|(w, _)| w.log_variance[axis]).collect();
-            let samples = self.ring.iter().map(|(w, _)| w.samples).max().unwrap_or(2);
-            let quartile = quantile(&mut logs, 0.25);
-            if quartile <= f64::MIN_POSITIVE.ln() + 1.0 {
-                // It hardly ever changes: a change says nothing.
-                self.axes[axis] = Axis::default();
-                continue;
+        self.axes = [0, 1, 2].map(|axis| self.axis(axis));
+    }
+
+    fn axis(&self, axis: usize) -> Axis {
+        let samples = self.ring.iter().map(|(w, _)| w.samples).max().unwrap_or(2);
+        // The logarithm of a variance of n samples of white noise has this spread.
+        let white = (2.0 / (samples.max(2) - 1) as f64).sqrt();
+        let many = |values: std::ops::Range<usize>| {
+            self.ring.iter().filter(|(w, _)| values.contains(&w.values[axis])).count()
+        };
+        let (dull, lively) = (many(2..VALUES), many(VALUES..VALUES + 1));
+        let often = FEWEST_LIVELY.max(self.ring.len() / ONE_LIVELY_OF);
+        if lively >= often && ONE_DULL_OF * dull <= lively {
+            let usual = self.axis_of(axis, white, |w| w.values[axis] == VALUES);
+            if usual.spread <= WIDE * white {
+                return Axis { lively: true, ..usual };
             }
-            // The logarithm of a variance of n samples of white noise has this spread.
-            let white = (2.0 / (samples.max(2) - 1) as f64).sqrt();
-            let spread = ((quartile - quantile(&mut logs, 0.05)) / TO_TWENTIETH).max(white);
-            let mut steps: Vec<f64> = self
-                .ring
-                .iter()
-                .zip(self.ring.iter().skip(1))
-                .filter(|(_, (_, apart))| !apart)
-                .map(|((a, _), (b, _))| (b.mean[axis] - a.mean[axis]).abs())
-                .collect();
-            let step = quantile(&mut steps, 0.25) / HALF_QUARTILE;
-            self.axes[axis] = Axis { centre: quartile + QUARTILE * spread, spread, step };
         }
+        self.axis_of(axis, white, |_| true)
+    }
+
+    /// What is usual of an axis in windows of some kind.
+    fn axis_of(&self, axis: usize, white: f64, of: impl Fn(&WindowStatistics) -> bool) -> Axis {
+        let windows = self.ring.iter().filter(|(w, _)| of(w));
+        let mut logs: Vec<f64> = windows.map(|(w, _)| w.log_variance[axis]).collect();
+        let quartile = quantile(&mut logs, 0.25);
+        if quartile <= f64::MIN_POSITIVE.ln() + 1.0 {
+            // It hardly ever changes: a change says nothing.
+            return Axis::default();
+        }
+        let spread = ((quartile - quantile(&mut logs, 0.05)) / TO_TWENTIETH).max(white);
+        let mut steps: Vec<f64> = self
+            .ring
+            .iter()
+            .zip(self.ring.iter().skip(1))
+            .filter(|((a, _), (b, apart))| !apart && of(a) && of(b))
+            .map(|((a, _), (b, _))| (b.mean[axis] - a.mean[axis]).abs())
+            .collect();
+        let step = quantile(&mut steps, 0.25) / HALF_QUARTILE;
+        Axis { centre: quartile + QUARTILE * spread, spread, step, lively: false }
+    }
+
+    /// The axes that stand still in a window and otherwise never do.
+    pub(super) fn frozen(&self, window: &WindowStatistics) -> [bool; 3] {
+        [0, 1, 2].map(|i| {
+            let axis = &self.axes[i];
+            let quieter = axis.centre - window.log_variance[i];
+            axis.lively
+                && (window.values[i] == 1 || quieter > (BEYOND * axis.spread).max(STILL.ln()))
+        })
+    }
+
+    /// The spread of the difference of neighbouring means, on each axis.
+    pub(super) fn steps(&self) -> [f64; 3] {
+        self.axes.map(|axis| axis.step)
     }
 
     /// Whether the last window is beyond what is usual.

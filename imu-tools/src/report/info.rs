@@ -91,7 +91,15 @@ fn sensor(text: &mut String, sensor: &SensorNoise) {
         let norm = sensor.mean.iter().map(|x| x * x).sum::<f64>().sqrt();
         row("norm of mean", format!("{norm:.5} m/s² (gravity is 9.78 to 9.83)"));
     }
-    row("held samples", format!("{}, longest run {}", checks.held, checks.longest_hold));
+    let constant = checks.stuck == [true; 3];
+    row(
+        "held samples",
+        if constant {
+            "all: no axis ever changes".into()
+        } else {
+            format!("{}, longest run {}", checks.held, checks.longest_hold)
+        },
+    );
     row("not finite", format!("{} (or absurdly large)", sensor.rejected));
     if !sensor.disturbed.is_empty() {
         let total: f64 = sensor.disturbed.iter().map(|s| s.to_s - s.from_s).sum();
