@@ -80,6 +80,27 @@ fn folders_appear_whole_or_not_at_all() {
     assert!(folder.names().is_empty());
 }
 
+/// The usual step between jittering stamps is not the mean one.
+#[test]
+fn the_rate_is_that_of_the_whole_recording() {
+    let folder = Folder::new();
+    let mut block = simulated(SCENE, 3);
+    for list in [&mut block.gyroscope, &mut block.accelerometer] {
+        // Stamps come late by up to 1 ms, and 0.1 s is missing.
+        for (k, sample) in (0_i64..).zip(list.iter_mut()) {
+            sample.stamp_ns += 1000 * (k * k * 7919 % 1009);
+        }
+        list.drain(500..520);
+    }
+    let mut sink = recording::create(folder.at("out/").as_ref()).unwrap();
+    sink.write_block(&block).unwrap();
+    sink.finish().unwrap();
+    let yaml = fs::read_to_string(folder.at("out/mav0/imu0/sensor.yaml")).unwrap();
+    let rate = yaml.lines().find_map(|line| line.strip_prefix("rate_hz: ")).unwrap();
+    // 1 ms of 60 s.
+    assert!((rate.parse::<f64>().unwrap() - 200.0).abs() < 200.0 * 1.7e-5, "{rate}");
+}
+
 #[test]
 fn several_imus_are_listed() {
     let folder = Folder::new();

@@ -6,16 +6,13 @@ use std::path::{Path, PathBuf};
 use crate::error::Error;
 use crate::output::{Output, Unfinished};
 use crate::recording::csv::{push_integer, push_values};
-use crate::recording::{BLOCK_SAMPLES, Block, Sample, Sink};
+use crate::recording::{BLOCK_SAMPLES, Block, Sample, Sink, Timeline};
 
 const HEADER: &str = "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],\
                       a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
 
 /// Text is handed on when there is so much of it.
 const PIECE: usize = 256 * 1024;
-
-/// Steps of time from which the rate is taken.
-const STEPS: usize = 1000;
 
 /// Samples of one sensor that may wait for the other.
 const MOST_WAITING: usize = 16 * BLOCK_SAMPLES;
@@ -31,8 +28,8 @@ pub struct EurocWriter {
     text: Vec<u8>,
     gyroscope: VecDeque<Sample>,
     accelerometer: VecDeque<Sample>,
-    last_ns: Option<i64>,
-    steps: Vec<i64>,
+    /// What the stamps show of the rate.
+    timeline: Timeline,
 }
 
 /// The folder that the recording at `path` is written into: `imu0` in `path`, if that is a `mav0`, or
@@ -57,7 +54,9 @@ impl EurocWriter {
             return Err(Error::usage("EuRoC's recordings are folders: a pipe cannot be one"));
         }
         let folder = imu0(path);
-        let missing: Vec<&Path> = folder.ancestors().take_while(|f| !f.exists()).collect();
+        // The last ancestor of a relative path is empty: the folder where one is.
+        let missing = |f: &&Path| !f.as_os_str().is_empty() && !f.exists();
+        let missing: Vec<&Path> = folder.ancestors().take_while(missing).collect();
         let made: Vec<PathBuf> = missing.into_iter().rev().map(Path::to_owned).collect();
         let mut writer = Self {
             folder,
@@ -67,8 +66,7 @@ impl EurocWriter {
             text: Vec::with_capacity(PIECE + 1024),
             gyroscope: VecDeque::new(),
             accelerometer: VecDeque::new(),
-            last_ns: None,
-            steps: Vec::new(),
+            timeline: Timeline::new(),
         };
         writer.text.extend_from_slice(HEADER.as_bytes());
         for folder in made {
@@ -83,12 +81,6 @@ impl EurocWriter {
     }
 
     fn row(&mut self, rate: Sample, force: Sample) {
-        if let Some(last) = self.last_ns
-            && self.steps.len() < STEPS
-        {
-            self.steps.push(rate.stamp_ns.saturating_sub(last));
-        }
-        self.last_ns = Some(rate.stamp_ns);
         push_integer(&mut self.text, rate.stamp_ns);
         push_values(&mut self.text, rate.value);
         push_values(&mut self.text, force.value);
@@ -112,16 +104,16 @@ impl EurocWriter {
         ))
     }
 
-    /// The rate in Hz, by the usual step of time.
+    /// The rate in Hz over the whole recording, to the digits that `imu info` shows.
     fn rate_hz(&mut self) -> Option<f64> {
-        self.steps.sort_unstable();
-        let step = *self.steps.get(self.steps.len() / 2)?;
-        (step > 0).then(|| (1e12 / step as f64).round() / 1e3)
+        let rate_hz = std::mem::take(&mut self.timeline).finish(|_| {}).rate_hz;
+        (rate_hz > 0.0).then(|| (1e6 * rate_hz).round() / 1e6)
     }
 }
 
 impl Sink for EurocWriter {
     fn write_block(&mut self, block: &Block) -> Result<(), Error> {
+        self.timeline.push(&block.gyroscope, |_| {});
         self.gyroscope.extend(&block.gyroscope);
         self.accelerometer.extend(&block.accelerometer);
         while let (Some(&rate), Some(&force)) = (self.gyroscope.front(), self.accelerometer.front())
