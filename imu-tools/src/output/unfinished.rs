@@ -42,14 +42,18 @@ impl Drop for Unfinished {
     }
 }
 
-/// From now on an interruption (Ctrl-C) or a request to end (SIGTERM) removes what is unfinished, and
-/// ends the program with the customary exit code, 130 or 143. Where there are no such signals
-/// nothing happens.
+/// From now on an interruption (Ctrl-C), a request to end (SIGTERM) or a terminal that is closed
+/// (SIGHUP) removes what is unfinished, and ends the program with the customary exit code, 130, 143
+/// or 129. Where there are no such signals nothing happens.
 pub fn clean_up_on_signals() {
     #[cfg(unix)]
     {
-        use signal_hook::consts::{SIGINT, SIGTERM};
-        let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM]) else {
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        let mut signals = vec![SIGINT, SIGTERM];
+        if !hangups_are_ignored() {
+            signals.push(SIGHUP);
+        }
+        let Ok(mut signals) = signal_hook::iterator::Signals::new(signals) else {
             return; // The system keeps its own way of ending programs.
         };
         std::thread::spawn(move || {
@@ -61,6 +65,16 @@ pub fn clean_up_on_signals() {
             }
         });
     }
+}
+
+/// Whether the program was started by `nohup`, to go on when the terminal is closed. Where the
+/// system does not tell (elsewhere than on Linux), it might have been.
+#[cfg(unix)]
+fn hangups_are_ignored() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_none_or(|mask| mask & 1 != 0)
 }
 
 #[cfg(unix)]
