@@ -11,9 +11,10 @@ mod info;
 mod progress;
 mod reading;
 mod simulate;
+mod terminal;
 
 use std::ffi::OsString;
-use std::io::{self, Write as _};
+use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -22,6 +23,7 @@ use clap::{Parser, Subcommand};
 use crate::error::Error;
 use crate::output;
 use crate::recording::{self, Format, Sink};
+use terminal::{print, say};
 
 /// Calibrate an IMU's noise, or simulate one: from a recording to noise numbers to trust.
 #[derive(Debug, Parser)]
@@ -69,19 +71,6 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             ExitCode::from(error.exit_code())
         }
     }
-}
-
-/// Prints a result on the standard output.
-fn print(text: &str) -> Result<(), Error> {
-    let mut stdout = io::stdout().lock();
-    let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
-    written.map_err(|source| Error::io("write", Path::new("-"), source))
-}
-
-/// Says a sentence on the standard error, where that can be written.
-fn say(sentence: &str) {
-    // A program that cannot complain has nobody left to tell.
-    let _ = writeln!(io::stderr(), "{sentence}");
 }
 
 /// Starts a recording at `path`: in `format`, or in that which its name says.
