@@ -357,3 +357,16 @@ fn the_table_names_units_and_their_twins() {
     }
     assert_eq!(said.err, "", "nothing to warn of");
 }
+
+#[test]
+fn results_go_into_a_folder_and_not_over_a_recording() {
+    let folder = Folder::new();
+    let recording = folder.record("allan.csv", &simulated(SCENE, 1));
+    for (output, words) in [("-", "go into a folder"), (&folder.at(""), "is the recording itself")]
+    {
+        let said = calibrate(&[&recording, "-o", output]);
+        assert_eq!(said.code, 2, "{output}: {}", said.err);
+        assert!(said.err.contains(words), "{}", said.err);
+    }
+    assert_eq!(folder.names(), ["allan.csv"]);
+}

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::progress;
 use super::reading::{Opened, Reading};
+use super::{progress, same_target};
 use crate::calibrate::{Calibration, Estimator, Options, calibrate};
 use crate::error::Error;
 use crate::output::Output;
@@ -30,8 +30,9 @@ Record the sensor at rest, warmed up, on something solid: a minute shows N, hour
 
 /// Estimate an IMU's noise from a recording of it at rest.
 ///
-/// Reads ROS 1 bags and CSV files (also EuRoC's data.csv), finds the IMU in them, and fits white
-/// noise N and random walk K to the Allan variance of every axis.
+/// Reads bags of ROS 1 and 2, PX4's logs, tables in text, arrays of NumPy and EuRoC's folders, packed
+/// by gzip or Zstandard too, finds the IMU in them, and fits white noise N and random walk K to the
+/// Allan variance of every axis.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Calibrate {
@@ -39,7 +40,7 @@ pub(super) struct Calibrate {
     /// ends, and pooled where they are of other days or sensors
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Write report.html, allan.svg, allan.png, imu.yaml and allan.csv into this folder
+    /// Write report.html, allan.svg, allan.png, imu.yaml and allan.csv into this folder, over those there
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Print one JSON object instead of a table
@@ -63,6 +64,9 @@ pub(super) struct Calibrate {
     #[command(flatten)]
     reading: Reading,
 }
+
+/// The files written into a folder.
+const RESULTS: [&str; 5] = ["imu.yaml", "allan.csv", "allan.svg", "allan.png", "report.html"];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum FormatName {
@@ -107,6 +111,7 @@ enum EstimatorName {
 impl Calibrate {
     pub(super) fn run(self) -> Result<(), Error> {
         let options = self.options()?;
+        self.check_output()?;
         let Opened { source, names } = self.reading.open(&self.files)?;
         let bar = progress::bytes(source.bytes_total(), "reading");
         let all = names.join(", ");
@@ -128,6 +133,25 @@ impl Calibrate {
         match self.format.filter(|_| self.output.is_none()) {
             Some(format) => super::print(&format.form().write(&calibration)),
             None => super::print(&report::table::calibration(&calibration)),
+        }
+    }
+
+    /// Two files do not go into a pipe, nor over a recording.
+    fn check_output(&self) -> Result<(), Error> {
+        let Some(folder) = &self.output else { return Ok(()) };
+        if folder == Path::new("-") {
+            return Err(Error::usage(
+                "the results go into a folder, and - is none: name one, or leave -o out",
+            ));
+        }
+        let targets = RESULTS.map(|name| folder.join(name));
+        let mut files = self.files.iter().filter(|file| *file != Path::new("-"));
+        match files.find(|file| targets.iter().any(|to| same_target(file, to))) {
+            Some(file) => Err(Error::usage(format!(
+                "{} is the recording itself: write into another folder",
+                file.display()
+            ))),
+            None => Ok(()),
         }
     }
 
@@ -168,15 +192,15 @@ pub(super) fn write_into(
 ) -> Result<(), Error> {
     std::fs::create_dir_all(folder).map_err(|e| Error::io("make the folder", folder, e))?;
     let allan = report::plot::allan(calibration);
-    let files = [
-        ("imu.yaml", form.write(calibration).into_bytes()),
-        ("allan.csv", report::csv::deviations(calibration).into_bytes()),
-        ("allan.svg", allan.svg().into_bytes()),
-        ("allan.png", allan.png()?),
-        ("report.html", report::html::page(calibration).into_bytes()),
+    let contents = [
+        form.write(calibration).into_bytes(),
+        report::csv::deviations(calibration).into_bytes(),
+        allan.svg().into_bytes(),
+        allan.png()?,
+        report::html::page(calibration).into_bytes(),
     ];
     let mut written = Vec::new();
-    for (name, bytes) in files {
+    for (name, bytes) in RESULTS.iter().zip(contents) {
         let mut output = Output::create(&folder.join(name))?;
         output.write(&bytes)?;
         written.push(output);
