@@ -116,6 +116,33 @@ fn three_samples_are_described() {
 }
 
 #[test]
+fn what_a_recording_does_not_show_is_not_told() {
+    let folder = Folder::new();
+    let header = "t,gx,gy,gz,ax,ay,az\n";
+    let one = info(&[&folder.put("one.csv", format!("{header}\n0,1,2,3,4,5,6\n\n"))]);
+    assert_eq!(one.code, 0, "{}", one.err);
+    for words in ["unknown: no two stamps differ", "         1  used", "3.00000 to 3.00000"] {
+        assert!(one.out.contains(words), "'{words}' is not in {}", one.out);
+    }
+    assert!(one.out.lines().all(|line| line.len() < 300), "{}", one.out);
+    let rows: Vec<String> = (0..9).map(|i| format!("0.{i},nan,nan,nan,0,0,9.8\n")).collect();
+    let none = info(&[&folder.put("none.csv", format!("{header}{}", rows.concat()))]);
+    assert!(none.out.contains("none is finite"), "{}", none.out);
+}
+
+/// What a file calls its columns would reach the terminal, and the terminal would obey.
+#[test]
+fn control_characters_of_a_file_are_shown_and_not_sent() {
+    let folder = Folder::new();
+    let path =
+        folder.put("esc.csv", "t,gx,gy,gz,ax,ay,az\n0,1,2,3,4,5,6\n1,\x1b[31mred,2,3,4,5,6\n");
+    let said = info(&[&path]);
+    assert_eq!(said.code, 1);
+    assert!(said.err.contains("line 3, column 2: '\\u001b[31mred"), "{}", said.err);
+    assert!(!said.err.trim_end().contains(|c: char| c.is_control()), "{:?}", said.err);
+}
+
+#[test]
 fn what_cannot_be_read_is_one_sentence() {
     let folder = Folder::new();
     let said = info(&[&folder.at("nothing.bag")]);

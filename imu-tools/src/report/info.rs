@@ -65,7 +65,13 @@ fn sensor(text: &mut String, sensor: &SensorNoise) {
         sd if sd > 0.0 => format!(" ± {sd:.1e}"),
         _ => String::new(),
     };
-    row("rate", format!("{:.6}{error} Hz", stamps.rate_hz));
+    row(
+        "rate",
+        match stamps.rate_hz {
+            rate if rate > 0.0 => format!("{rate:.6}{error} Hz"),
+            _ => "unknown: no two stamps differ".into(),
+        },
+    );
     row("jitter", format!("{} ms rms", short(1e3 * stamps.jitter_s)));
     row("gaps", format!("{}, samples missing: {}", stamps.gap_count, stamps.missing));
     row(
@@ -79,17 +85,21 @@ fn sensor(text: &mut String, sensor: &SensorNoise) {
         ),
     );
     let checks = &sensor.checks;
-    for (k, axis) in AXES.iter().enumerate() {
+    let any = sensor.rejected < stamps.samples;
+    for (k, axis) in AXES.iter().enumerate().filter(|_| any) {
         let (low, high) = checks.range[k];
         let step = match checks.step[k] {
             Some(step) => format!(", in steps of {step:.3e}"),
             None => String::new(),
         };
-        row(axis, format!("mean {:.5} {unit}, from {low:.5} to {high:.5}{step}", sensor.mean[k]));
+        let [mean, low, high] = [sensor.mean[k], low, high].map(decimal);
+        row(axis, format!("mean {mean} {unit}, from {low} to {high}{step}"));
     }
-    if sensor.kind == SensorKind::Accelerometer {
-        let norm = sensor.mean.iter().map(|x| x * x).sum::<f64>().sqrt();
-        row("norm of mean", format!("{norm:.5} m/s² (gravity is 9.78 to 9.83)"));
+    if !any {
+        row("values", "none is finite, or small enough for a sensor".into());
+    } else if sensor.kind == SensorKind::Accelerometer {
+        let norm = decimal(sensor.mean.iter().map(|x| x * x).sum::<f64>().sqrt());
+        row("norm of mean", format!("{norm} m/s² (gravity is 9.78 to 9.83)"));
     }
     let constant = checks.stuck == [true; 3];
     row(
@@ -109,6 +119,12 @@ fn sensor(text: &mut String, sensor: &SensorNoise) {
         let longest = sensor.deviation.get(contradiction.octave).map_or(0.0, |d| d.tau_s);
         row("low-pass", format!("or vibration, seen up to τ = {} s", short(longest)));
     }
+}
+
+/// Five decimals where they show the number, an exponent where they do not.
+fn decimal(x: f64) -> String {
+    let shown = x == 0.0 || (1e-5..1e7).contains(&x.abs());
+    if shown { format!("{x:.5}") } else { format!("{x:.5e}") }
 }
 
 fn unit(kind: SensorKind) -> &'static str {
@@ -141,4 +157,22 @@ pub fn json(examined: &Examined) -> Value {
         fields.insert("refusal".into(), json!(examined.refusal.as_ref().map(ToString::to_string)));
     }
     value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::decimal;
+
+    #[test]
+    fn numbers_of_any_size_are_short() {
+        for (x, shown) in [
+            (0.0, "0.00000"),
+            (-9.806_65, "-9.80665"),
+            (3.2e-9, "3.20000e-9"),
+            (1e308, "1.00000e308"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(decimal(x), shown);
+        }
+    }
 }

@@ -77,15 +77,18 @@ impl CsvReader {
         }
     }
 
-    /// Takes the row in the next `len` bytes.
+    /// Takes the row in the next `len` bytes; `false` where there is none in them.
     #[inline]
-    fn row(&self, len: usize, block: &mut Block) -> Result<(), Fault> {
+    fn row(&self, len: usize, block: &mut Block) -> Result<bool, Fault> {
         let line = self.input.at_hand().get(..len).unwrap_or_default();
         let line = match line {
             [line @ .., b'\r', b'\n'] | [line @ .., b'\n' | b'\r'] => line,
             line => line,
         };
-        if is_aside(line) { Ok(()) } else { row::take(&self.layout, line, block) }
+        if is_aside(line) {
+            return Ok(false);
+        }
+        row::take(&self.layout, line, block).map(|()| true)
     }
 
     /// The error for a row that cannot be read, unless it is the last one and cut off.
@@ -111,7 +114,7 @@ impl Source for CsvReader {
             let Some(len) = self.next_line()? else { break };
             self.line += 1;
             match self.row(len, block) {
-                Ok(()) => self.rows += 1,
+                Ok(row) => self.rows += u64::from(row),
                 Err(fault) => self.faulty(len, fault)?,
             }
             self.input.consume(len);
