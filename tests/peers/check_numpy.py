@@ -75,7 +75,7 @@ def main():
                        stderr=subprocess.DEVNULL)
         stamps, values = table(source)
         for path, flags, expected in arrays(folder, stamps, values):
-            command = [imu, "convert", path, back, *flags]
+            command = [imu, "convert", "--force", path, back, *flags]
             said = subprocess.run(command, capture_output=True, text=True)
             if said.returncode:
                 same, why = False, said.stderr.strip()

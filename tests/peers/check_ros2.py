@@ -87,7 +87,7 @@ def read(imu, path, folder, *flags):
     """What `imu convert` makes of a recording, and what it said."""
     table = pathlib.Path(folder) / "out.csv"
     table.unlink(missing_ok=True)
-    done = subprocess.run([imu, "convert", *flags, path, table], capture_output=True, text=True)
+    done = subprocess.run([imu, "convert", "--force", *flags, path, table], capture_output=True, text=True)
     if done.returncode:
         raise ValueError(done.stderr.strip())
     with open(table, newline="") as file:
@@ -255,7 +255,7 @@ def main():
         check("sqlite, messages on overflow pages", joined(both), path)
         with open(path, "rb") as file:
             pipe = subprocess.run(
-                [imu, "convert", "-", folder / "pipe.csv"], stdin=file, capture_output=True
+                [imu, "convert", "--force", "-", folder / "pipe.csv"], stdin=file, capture_output=True
             )
         same = pipe.returncode == 0 and (folder / "pipe.csv").read_bytes() == (folder / "out.csv").read_bytes()
         failed += not same
@@ -267,7 +267,7 @@ def main():
         for output in ("ours.mcap", "ours.csv"):
             subprocess.run([imu, *scene, folder / output], check=True, capture_output=True)
         write_mcap(path := folder / "mixed.mcap", {"/imu": (IMU, data(mixed))}, CompressionType.NONE)
-        subprocess.run([imu, "convert", path, folder / "ours_mixed.mcap"], check=True, capture_output=True)
+        subprocess.run([imu, "convert", "--force", path, folder / "ours_mixed.mcap"], check=True, capture_output=True)
         truth = {}
         with open(folder / "ours.csv", newline="") as file:
             rows = csv.reader(file)

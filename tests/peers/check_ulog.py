@@ -173,7 +173,7 @@ def by_pyulog(path):
 def by_imu(imu, path, gyro, accel, folder):
     """The same samples by `imu convert`."""
     table = f"{folder}/out.csv"
-    command = [imu, "convert", path, table, "--topic", f"{gyro},{accel}"]
+    command = [imu, "convert", "--force", path, table, "--topic", f"{gyro},{accel}"]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
         raise ValueError(done.stderr.strip())

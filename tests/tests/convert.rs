@@ -284,6 +284,36 @@ fn a_recording_is_never_written_over_by_itself() {
     let said = convert(&[&source, &b, &c]);
     assert_eq!(said.code, 2);
     assert!(said.err.contains("c.bag is there already"), "{}", said.err);
+    // So must not a slip of the finger behind one.
+    fs::write(&c, "precious").expect("written");
+    let said = convert(&[&source, &c]);
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("c.bag is there already") && said.err.contains("--force"));
+    assert_eq!(fs::read(&c).expect("read"), b"precious");
+    converted(&[&source, &c, "--force"]);
+    assert_eq!(bits(&samples(&c)), bits(&block));
+    let said = convert(&[&source, &sequence]);
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("data.csv is there already"), "{}", said.err);
+}
+
+#[test]
+fn folders_are_made_where_the_program_is_called() {
+    let folder = Folder::new();
+    folder.record("a.bag", &simulated(SHORT, 1));
+    for arguments in [
+        &["convert", "a.bag", "one/"][..],
+        &["convert", "a.bag", "mav0"],
+        &["convert", "a.bag", "two", "--to", "euroc"],
+        &["simulate", "--duration", "2s", "-o", "three/"],
+        &["simulate", "--duration", "2s", "-o", "./four/five/"],
+    ] {
+        let output = imu().args(arguments).current_dir(folder.path()).output().expect("started");
+        assert!(output.status.success(), "{arguments:?}: {}", said(&output).err);
+    }
+    for made in ["one/mav0", "mav0", "two/mav0", "three/mav0", "four/five/mav0"] {
+        assert!(folder.path().join(made).join("imu0/data.csv").is_file(), "{made}");
+    }
 }
 
 #[test]

@@ -136,6 +136,19 @@ fn mistakes_are_one_sentence_and_leave_no_file() {
 }
 
 #[test]
+fn a_scene_is_never_written_over() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let (scene, csv) = (at(&folder, "scene.toml"), at(&folder, "a.csv"));
+    fs::write(&scene, "duration = \"1s\"\n").expect("written");
+    for arguments in [&["-o", &scene, "--to", "csv"][..], &["-o", &csv, "--truth", &scene]] {
+        let said = run(&[&["simulate", &scene][..], arguments].concat());
+        assert_eq!(said.code, 2, "{}", said.err);
+        assert!(said.err.contains("is the scene itself"), "{}", said.err);
+    }
+    assert_eq!(fs::read_to_string(&scene).expect("read"), "duration = \"1s\"\n");
+}
+
+#[test]
 fn a_reader_that_leaves_ends_the_program_quietly() {
     let mut call = imu();
     call.args(["simulate", "low", "--duration", "1h", "-o", "-"]);

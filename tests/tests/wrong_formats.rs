@@ -37,7 +37,7 @@ fn a_recording_is_read_whatever_its_name() {
         let bytes = bytes.expect("written");
         for name in NAMES {
             let path = folder.put(name, &bytes);
-            let said = run(&["convert", &path, &out]);
+            let said = run(&["convert", &path, &out, "--force"]);
             if said.code == 0 {
                 assert!(said.out.starts_with("wrote 500 samples of both"), "{}", said.out);
                 continue;
@@ -46,12 +46,12 @@ fn a_recording_is_read_whatever_its_name() {
             assert_eq!(format, Format::Csv, "{name}: {}", said.err);
             assert_refused(&said, 1, &[name], name);
         }
-        let said = run(&["convert", &folder.put("x.csv", &bytes), &out]);
+        let said = run(&["convert", &folder.put("x.csv", &bytes), &out, "--force"]);
         assert_eq!(said.code, 0, "{}", said.err);
     }
     for name in NAMES {
         let path = folder.put(name, ulogs::plain(1, 100));
-        let said = run(&["convert", &path, &out]);
+        let said = run(&["convert", &path, &out, "--force"]);
         assert_eq!(said.code, 0, "{name}: {}", said.err);
     }
 }

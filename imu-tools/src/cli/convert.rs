@@ -39,7 +39,7 @@ pub(super) struct Convert {
     /// Write this format whatever the name: bag, mcap, csv or euroc (a pipe gets csv unless you say so)
     #[arg(long = "to", value_name = "FORMAT")]
     format: Option<Format>,
-    /// Write over a file that is there, after several recordings too
+    /// Write over a file that is there
     #[arg(long)]
     force: bool,
     /// Print one JSON object instead of a sentence
@@ -75,11 +75,11 @@ impl Convert {
             }
         }
         // `imu convert night_*.bag`, the new name forgotten, must not cost a recording.
-        if from.len() > 1 && !self.force && written.is_file() {
+        if !self.force && written.is_file() {
             return Err(Error::usage(format!(
                 "the last name is the file to write, and {} is there already: name a new one, or \
                  say --force",
-                to.display()
+                written.display()
             )));
         }
         let Opened { source, names } = self.reading.open(from)?;

@@ -36,7 +36,7 @@ Examples:
 /// Presets (N and K of gyroscope and accelerometer, continuous time, SI):
 /// low 0.01, 1e-5 and 0.01, 1e-4; mid 0.015, 5e-5 and 0.019, 5e-4; high 0.03, 1e-4 and 0.03, 1e-3.
 /// Same scene and seed, same bytes on every machine: the first stamp is a constant, 1600000000 s,
-/// unless the scene says otherwise.
+/// unless the scene says otherwise. A file that is there is written over.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Simulate {
@@ -76,6 +76,15 @@ impl Simulate {
             return Err(Error::usage(format!(
                 "the recording and the truth cannot both go to {}: name two files",
                 self.output.display()
+            )));
+        }
+        let is_file = Preset::from_name(&self.scene).is_none();
+        let is_scene = |path: &Path| is_file && same_target(path, Path::new(&self.scene));
+        let targets = [Some(self.output.as_path()), self.truth.as_deref()];
+        if let Some(target) = targets.into_iter().flatten().find(|path| is_scene(path)) {
+            return Err(Error::usage(format!(
+                "{} is the scene itself: name another file to write",
+                target.display()
             )));
         }
         let mut simulator = Simulator::new(&scene)?;
