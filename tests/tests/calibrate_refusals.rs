@@ -40,7 +40,10 @@ fn files_that_are_no_recordings() {
         (folder.at("absent.bag"), &["absent.bag", "there is no such file"][..]),
         (folder.put("empty.bag", ""), &["empty.bag is empty"]),
         (folder.put("empty.csv", ""), &["empty.csv is empty"]),
-        (folder.put("text.bag", "Dear diary,\nno bag.\n"), &["text.bag is no ROS 1 bag"]),
+        (
+            folder.put("text.bag", "Dear diary,\nno bag.\n"),
+            &["text.bag holds no row of numbers", "no ROS 1 bag"],
+        ),
         (folder.put("old.bag", "#ROSBAG V1.2\n"), &["old.bag is no ROS 1 bag of version 2.0"]),
         (folder.put("a.zip", zip), &["a.zip is no whole .npz"]),
         (folder.put("text.csv", "Dear diary,\nno table.\n"), &["text.csv holds no row of numbers"]),

@@ -201,6 +201,11 @@ fn what_the_new_file_cannot_hold_is_said() {
     let said = converted(&[&folder.at("again.csv"), &folder.at("again.bag")]);
     assert_eq!(said.err, "");
 
+    let table = "i,t,gx,gy,gz,mag_x,mag_y\n0,0.1,1,2,3,4,5\n1,0.2,1,2,3,4,5\n";
+    let said = converted(&[&folder.put("mag.csv", table), &folder.at("mag.bag")]);
+    let words = "imu: other columns of the table are not written: i, mag_x, mag_y\n";
+    assert!(said.err.contains(words), "{}", said.err);
+
     // A bag's clock begins in 1970.
     let early = Block {
         gyroscope: vec![Sample { stamp_ns: -1, value: [0.0; 3] }],

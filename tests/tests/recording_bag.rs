@@ -269,7 +269,7 @@ fn what_is_no_recording_says_so() {
     let options = ReadOptions::default();
     let error = read_bytes(b"", &options).unwrap_err();
     assert!(error.to_string().ends_with("is empty"), "{error}");
-    let error = read_bytes(b"t,gx,gy,gz,ax,ay,az\n1,2,3,4,5,6,7\n", &options).unwrap_err();
+    let error = read_bytes(b"#RXSBAG V2.0\n\x45\0\0\0", &options).unwrap_err();
     assert!(error.to_string().contains("no ROS 1 bag"), "{error}");
     let error = recording::open(Path::new("/no/such.bag"), &options).err().unwrap();
     assert!(error.to_string().contains("no such file"), "{error}");

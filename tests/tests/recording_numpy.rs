@@ -255,7 +255,8 @@ fn what_cannot_be_read_is_one_sentence() {
     for (name, bytes, part) in [
         ("a.npy.gz", gz.finish().unwrap(), "stored column by column"),
         ("b.npy", npy("'<f8'", false, "(9, 9, 9)", &[]), "no column of time"),
-        ("c.npy", npy("'|O'", false, "(9, 7)", &[]), "'|O'"),
+        ("c.npy", npy("'|O'", false, "(9, 7)", &[]), "'|O', objects of Python"),
+        ("c.npy", npy("'|O'", false, "(9,)", &[]), "array.astype(float)"),
         ("d.npy", b"\x93NUMPY\x01\x00\xff\xff{".to_vec(), "cut off in its header"),
         ("e.npz", npz(&[], false), "without NumPy arrays"),
         ("f.npz", npz(&[("t", one.clone()), ("gyro", two)], false), "'gyro_x' has 2 rows"),

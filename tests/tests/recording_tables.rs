@@ -111,6 +111,8 @@ fn dates() {
         "time;gx;gy;gz\n2024-05-01 12:00:00,000;1;2;3\n2024-05-01 12:00:00,005;1;2;3\n",
         "Date,Time,gx,gy,gz\n2024-05-01,12:00:00,1,2,3\n2024-05-01,12:00:00.005,1,2,3\n",
         "date time gx gy gz\n2024/05/01 12:00:00 1 2 3\n2024/05/01 12:00:00.005 1 2 3\n",
+        "date;time;gx;gy;gz\n01.05.2024;12:00:00,000;1;2;3\n01.05.2024;12:00:00,005;1;2;3\n",
+        "time,gx,gy,gz\n1.5.2024 12:00:00.000,1,2,3\n1.5.2024 12:00:00.005,1,2,3\n",
         "\"date\",\"gx\",\"gy\",\"gz\"\n\"2024-05-01 14:00:00+02:00\",1,2,3\n\"2024-05-01 14:00:00.005+02:00\",1,2,3\n",
         "2024-05-01T12:00:00.000Z,1,2,3,4,5,6\n2024-05-01T12:00:00.005Z,1,2,3,4,5,6\n",
     ] {
@@ -125,6 +127,44 @@ fn dates() {
         error.to_string().contains("line 3, column 1: '2024-05-32 12:00:00' is no time"),
         "{error}"
     );
+}
+
+#[test]
+fn dates_of_two_meanings_are_refused_by_name() {
+    for (text, date) in [
+        (
+            "time,gx,gy,gz\n12/31/2024 11:59:59 PM,1,2,3\n",
+            "a.csv begins with '12/31/2024 11:59:59 PM'",
+        ),
+        ("date,time,gx,gy,gz\n05/01/2024,12:00:00,1,2,3\n", "'05/01/2024'"),
+        ("time,gx,gy,gz\n11:59:59 PM,1,2,3\n", "'11:59:59 PM'"),
+    ] {
+        let error = read_as("a.csv", text, &ReadOptions::default()).unwrap_err().to_string();
+        assert!(error.contains(date) && error.contains("2024-12-31 13:00:00"), "{error}");
+    }
+}
+
+#[test]
+fn several_imus_in_one_table() {
+    let text = "t,imu1_gx,imu1_gy,imu1_gz,imu2_gx,imu2_gy,imu2_gz\n0.1,1,2,3,4,5,6\n";
+    let error = read_as("a.csv", text, &ReadOptions::default()).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    for words in ["imu1_gx, imu1_gy, imu1_gz, imu2_gx", "--map", "--columns"] {
+        assert!(error.to_string().contains(words), "{error}");
+    }
+    let (block, _) = read_as("a.csv", text, &map("t=t,gx=imu2_gx,gy=imu2_gy,gz=imu2_gz")).unwrap();
+    assert_eq!(block.gyroscope[0].value, [4.0, 5.0, 6.0]);
+    let survey = ReadOptions { survey: true, ..ReadOptions::default() };
+    let (block, notes) = read_as("a.csv", text, &survey).unwrap();
+    assert_eq!(block.gyroscope[0].value, [1.0, 2.0, 3.0]);
+    assert!(matches!(&notes[0], Note::Warning(said) if said.contains("several IMUs")), "{notes:?}");
+}
+
+#[test]
+fn times_too_large_for_their_unit() {
+    let text = "t [s],gx,gy,gz\n1700000000000000000,1,2,3\n1700000000005000000,1,2,3\n";
+    let error = read_as("a.csv", text, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("is too large a time in s: --time-unit"), "{error}");
 }
 
 #[test]

@@ -477,7 +477,7 @@ fn a_feature_that_must_be_understood_is_refused() {
 #[test]
 fn what_is_no_log_or_has_no_imu_is_told_in_a_sentence() {
     let options = ReadOptions::default();
-    assert_eq!(refusal(b"time,x\n1,2\n", &options).1, "a.ulg is no ULog");
+    assert_eq!(refusal(b"ULoh\x01\x12\x35\x01", &options).1, "a.ulg is no ULog");
     let cut = "a.ulg is cut off in its first 16 bytes: nothing of the log is left";
     assert_eq!(refusal(&header()[..12], &options).1, cut);
     assert_eq!(refusal(&header(), &options).1, "a.ulg holds no messages");
@@ -489,6 +489,14 @@ fn what_is_no_log_or_has_no_imu_is_told_in_a_sentence() {
         "a.ulg has no topic of an IMU (sensor_gyro, sensor_accel, their _fifo, vehicle_imu or \
          sensor_combined); it has battery:0, b:1"
     );
+    // Those of an IMU come first, of whatever number.
+    let formats = ["battery:uint64_t timestamp;float v;".to_owned(), sensor_format("sensor_gyro")];
+    let mut log = definitions(&[&formats[0], &formats[1]]);
+    log.extend(subscription(0, 0, "battery"));
+    log.extend(subscription(1, 1, "sensor_gyro"));
+    let (code, text) = refusal(&log, &topic("7"));
+    assert_eq!(code, 2);
+    assert!(text.ends_with("it has sensor_gyro:0, battery:0"), "{text}");
     let mut log = definitions(&["sensor_gyro:uint64_t timestamp;float x;"]);
     log.extend(subscription(0, 0, "sensor_gyro"));
     let unreadable = "topic sensor_gyro:0 of a.ulg cannot be read: it has no field y";

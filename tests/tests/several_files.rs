@@ -116,6 +116,30 @@ fn two_sensors_at_one_time_are_pooled_for_calibration_and_not_mixed_by_convert()
     assert!(!folder.names().contains(&"both.csv".to_owned()));
 }
 
+/// A table for each sensor: they are not two IMUs.
+#[test]
+fn two_halves_of_one_recording_are_told_to_be_merged() {
+    let folder = Folder::new();
+    let block = piece(&simulated(SCENE, 1), 0..10_000);
+    let table = |name: &str, header: &str, list: &[Sample], late_ns: i64| {
+        let row = |Sample { stamp_ns, value: [x, y, z] }: &Sample| {
+            format!("{},{x},{y},{z}\n", stamp_ns + late_ns)
+        };
+        let rows: String = list.iter().map(row).collect();
+        folder.put(name, format!("t [ns],{header}\n{rows}"))
+    };
+    let gyroscope = table("g.csv", "gx,gy,gz", &block.gyroscope, 0);
+    let accelerometer = table("a.csv", "ax,ay,az", &block.accelerometer, 1_000_000);
+    for (one, other) in [(&gyroscope, &accelerometer), (&accelerometer, &gyroscope)] {
+        let said = calibrate(&[one, other]);
+        assert_eq!(said.code, 1, "{}", said.err);
+        assert_eq!(said.err.lines().count(), 1, "{}", said.err);
+        for words in ["g.csv and ", "a.csv are of one time", "one recording of both"] {
+            assert!(said.err.contains(words), "'{words}' is not in {}", said.err);
+        }
+    }
+}
+
 #[test]
 fn warnings_name_the_file() {
     let folder = Folder::new();

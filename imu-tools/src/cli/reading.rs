@@ -54,6 +54,13 @@ impl Reading {
     }
 
     fn open_with(files: &[PathBuf], options: &ReadOptions) -> Result<Opened, Error> {
+        if let Some(topic) = &options.topic
+            && topic.split(',').any(|one| one.trim().is_empty())
+        {
+            return Err(Error::usage(format!(
+                "--topic '{topic}' lacks a name: give one, such as /imu, or two, such as /gyro,/accel"
+            )));
+        }
         if let [file] = files {
             let name = match file.to_str() {
                 Some("-") => "the pipe".to_owned(),

@@ -18,7 +18,7 @@
 //! ```
 
 use super::align::Aligner;
-use super::{Block, Note, Sample, Sink, Source, Stream, read_ahead};
+use super::{Block, Note, Sample, Sink, Source, Stream, TABLE, read_ahead};
 use crate::error::Error;
 
 /// What was written, and what was not.
@@ -119,7 +119,11 @@ fn left_out(streams: &[Stream], temperatures: u64) -> Vec<String> {
     if temperatures > 0 {
         sentences.push(format!("{temperatures} readings of a thermometer are not written"));
     }
-    let others: Vec<&Stream> = streams.iter().filter(|s| !s.used && s.messages > 0).collect();
+    let left = streams.iter().filter(|stream| !stream.used && stream.messages > 0);
+    let (columns, others): (Vec<&Stream>, Vec<&Stream>) = left.partition(|s| s.type_name == TABLE);
+    for Stream { name, .. } in columns {
+        sentences.push(format!("other columns of the table are not written: {name}"));
+    }
     if !others.is_empty() {
         let messages: u64 = others.iter().map(|stream| stream.messages).sum();
         let mut names: Vec<&str> = others.iter().take(NAMED).map(|s| s.name.as_str()).collect();

@@ -144,6 +144,9 @@ pub struct Stream {
     pub used: bool,
 }
 
+/// What the columns of a table are in the place of a message's type.
+pub(crate) const TABLE: &str = "table";
+
 /// A recording being read, front to back, once.
 pub trait Source: Send {
     /// Clears `block` and fills it with the next samples, at most [`BLOCK_SAMPLES`] a sensor;
@@ -225,6 +228,14 @@ pub struct ReadOptions {
     pub time_unit: Option<TimeUnit>,
 }
 
+impl ReadOptions {
+    /// Whether columns or a unit of time are told, which a recording that describes itself has not
+    /// to be told.
+    fn are_for_a_table(&self) -> bool {
+        self.columns.is_some() || self.map.is_some() || self.time_unit.is_some()
+    }
+}
+
 /// Opens the recording at `path` (`-` is a pipe), a file or a folder, whatever its format: what it
 /// holds decides, not its name.
 ///
@@ -269,7 +280,8 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     let named = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
     let holds = |magic: &[u8]| start.starts_with(magic);
     let magics = [b"#ROSBAG", mcap::MAGIC, ulog::MAGIC, rosbag2::MAGIC];
-    let other = magics.into_iter().any(holds) || numpy::is_numpy(start);
+    let text = is_text(start);
+    let other = text || magics.into_iter().any(holds) || numpy::is_numpy(start);
     if holds(b"#ROSBAG") || (named("bag") && !other) {
         return Ok(Box::new(bag::BagReader::open(input, options)?));
     }
@@ -292,10 +304,28 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
             path.display()
         )));
     }
+    let name = path.display().to_string();
+    let names =
+        [("bag", "ROS 1 bag"), ("mcap", "MCAP file"), ("ulg", "ULog"), ("db3", "rosbag2 database")];
+    let misnamed = names.into_iter().find(|(ending, _)| named(ending)).map(|(_, what)| what);
     if options.columns.is_none() && options.map.is_none() && poses::Poses::are_in(&mut input)? {
         return Err(poses::Poses::of(input)?.no_samples());
     }
-    Ok(Box::new(csv::CsvReader::open(input, options)?))
+    let table = csv::CsvReader::open(input, options);
+    let Some(what) = misnamed else { return Ok(Box::new(table?)) };
+    let table = table.map_err(|error| match error {
+        Error::Data(why) => {
+            Error::data(format!("{why} (it is text, and no {what} as it is named)"))
+        }
+        other => other,
+    })?;
+    let told = format!("{name} is text, and no {what} as it is named: it is read as a table");
+    Ok(Box::new(noted::Noted::new(Box::new(table), vec![Note::Info(told)])))
+}
+
+/// Whether these first bytes are text: there are no control characters but those of lines.
+fn is_text(start: &[u8]) -> bool {
+    !start.iter().any(|b| b.is_ascii_control() && !matches!(b, b'\t' | b'\n' | b'\r' | 0x0c))
 }
 
 /// Starts a recording at `path`, in the format that its name says; `-` is a CSV on a pipe.

@@ -55,6 +55,17 @@ impl TimeUnit {
         }
     }
 
+    /// The unit with so many digits to the nanosecond.
+    pub fn of_exponent(exponent: u32) -> Self {
+        match exponent {
+            9.. => Self::Seconds,
+            6..9 => Self::Milliseconds,
+            5 => Self::HundredMicroseconds,
+            3..5 => Self::Microseconds,
+            ..3 => Self::Nanoseconds,
+        }
+    }
+
     /// The unit's symbol.
     pub fn symbol(self) -> &'static str {
         match self {

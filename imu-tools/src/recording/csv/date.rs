@@ -1,7 +1,7 @@
 //! Times written as dates: ISO 8601 and what loggers make of it, into nanoseconds since 1970.
 //!
-//! `2024-05-01T12:00:00.005Z`, `2024/05/01 12:00:00,005+02:00`, or one half of it; UTC where no zone
-//! is given. Days are counted by the proleptic Gregorian calendar (Hinnant 2013, "chrono-compatible
+//! `2024-05-01T12:00:00.005Z`, `2024/05/01 12:00:00,005+02:00`, `01.05.2024 12:00`, or one half of
+//! it; UTC where no zone is given. Days are counted by the proleptic Gregorian calendar (Hinnant 2013, "chrono-compatible
 //! low-level date algorithms").
 
 use super::number::nanoseconds;
@@ -23,11 +23,35 @@ pub fn stamp(text: &[u8]) -> Option<i64> {
     }
 }
 
-/// Midnight of `2024-05-01` or `2024/05/01`.
+/// Whether a person would take this for a date or a time of day, and [`stamp`] does not.
+pub fn is_unknown(text: &[u8]) -> bool {
+    let digits = |text: &[u8]| (1..=4).contains(&text.len()) && text.iter().all(u8::is_ascii_digit);
+    let day = text.split(|b| matches!(b, b' ' | b'T')).next().unwrap_or_default();
+    let of_three = |mark: u8| {
+        let parts: Vec<&[u8]> = day.split(|&b| b == mark).collect();
+        parts.len() == 3 && parts.iter().all(|part| digits(part))
+    };
+    let is_date = [b'/', b'-', b'.'].into_iter().any(of_three);
+    let half = text.len().checked_sub(2).map(|at| text.split_at(at));
+    let is_half = |(clock, half): (&[u8], &[u8])| {
+        let half = half.to_ascii_uppercase();
+        (half == b"AM" || half == b"PM") && self::clock(clock.trim_ascii()).is_some()
+    };
+    stamp(text).is_none() && (is_date || half.is_some_and(is_half))
+}
+
+/// Midnight of `2024-05-01`, `2024/05/01` or `01.05.2024`.
 fn midnight(text: &[u8]) -> Option<i64> {
     let mut parts = text.split(|b| matches!(b, b'-' | b'/' | b'.'));
-    let (year, month, day) = (parts.next()?, parts.next()?, parts.next()?);
-    if year.len() != 4 || parts.next().is_some() {
+    let (first, month, last) = (parts.next()?, parts.next()?, parts.next()?);
+    // With points the day comes first all over the world; with dashes and strokes it may be second.
+    let points = !text.iter().any(|b| matches!(b, b'-' | b'/'));
+    let (year, day) = match (first.len(), last.len()) {
+        (4, _) => (first, last),
+        (1 | 2, 4) if points => (last, first),
+        _ => return None,
+    };
+    if parts.next().is_some() {
         return None;
     }
     let (year, month, day) = (whole(year)?, whole(month)?, whole(day)?);
@@ -102,6 +126,8 @@ mod tests {
             ("2024-05-01T06:30:00-0530", noon),
             ("2024-05-01T13+01", i64::MIN),
             ("2024-05-01", noon - DAY / 2),
+            ("01.05.2024 12:00:00.5", noon + SECOND / 2),
+            ("1.5.2024", noon - DAY / 2),
             ("12:00:00.5", DAY / 2 + SECOND / 2),
             ("12:30", DAY / 2 + 1800 * SECOND),
             ("1970-01-01T00:00:00Z", 0),
@@ -111,6 +137,24 @@ mod tests {
         ] {
             let expected = (expected > i64::MIN).then_some(expected);
             assert_eq!(stamp(text.as_bytes()), expected, "{text}");
+        }
+    }
+
+    /// 05/01 is in May for half of the world.
+    #[test]
+    fn dates_of_two_meanings_are_known_to_be_dates() {
+        for text in [
+            "12/31/2024",
+            "05/01/2024 12:00:00 PM",
+            "31-12-2024",
+            "1/2/24",
+            "2024-13-01T10:00:00",
+            "12:00:00.5 PM",
+        ] {
+            assert!(is_unknown(text.as_bytes()), "{text}");
+        }
+        for text in ["2024-12-31", "31.12.2024", "1.5", "-1-2", "PM", "", "today", "12:00:00"] {
+            assert!(!is_unknown(text.as_bytes()), "{text}");
         }
     }
 

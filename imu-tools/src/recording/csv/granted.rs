@@ -44,18 +44,13 @@ impl<'a> Granted<'a> {
         let said = said.map_err(|what| self.unclear(what, "--time-unit"))?;
         let unit = said.unwrap_or_else(|| {
             let unit = time_unit::from_data(times);
-            self.granted.push(format!("time as {}", unit.symbol()));
+            self.granted.push(format!("time as {} (--time-unit)", unit.symbol()));
             unit
         });
-        if let Some(rate) = time_unit::implausible_rate(times, unit) {
-            return Err(Error::data(format!(
-                "{} would have {rate:.2e} samples a second with time in {}: name the unit of its \
-                 time with --time-unit",
-                self.name,
-                unit.symbol()
-            )));
+        match time_unit::refusal(self.name, times, unit) {
+            Some(why) => Err(Error::data(why)),
+            None => Ok(unit),
         }
-        Ok(unit)
     }
 
     /// The factors of both sensors, and all that there is to say.

@@ -6,7 +6,7 @@ use super::celsius::Celsius;
 use super::columns::{Column, Columns};
 use super::dialect::{Dialect, Separator, pointed};
 use super::granted::Granted;
-use super::{date, number};
+use super::{beside, date, number};
 use crate::error::Error;
 use crate::recording::sensor::Sensor;
 use crate::recording::{Note, ReadOptions};
@@ -31,6 +31,8 @@ pub struct Layout {
     pub lines_before: u64,
     /// Bytes before it.
     pub bytes_before: usize,
+    /// Names of columns that are not taken; empty where there are none.
+    pub not_taken: String,
     /// What was taken for granted.
     pub notes: Vec<Note>,
 }
@@ -106,6 +108,47 @@ impl<'a> Start<'a> {
             bytes_before: bom + ends.sum::<usize>(),
         })
     }
+
+    /// The names in the first header of this width; none where there is no such.
+    fn names(&self, dialect: Dialect, width: usize) -> Vec<&'a [u8]> {
+        let mut all = self.headers.iter().map(|header| names(header, dialect));
+        all.find(|names| names.len() == width).unwrap_or_default()
+    }
+}
+
+/// The error for a file without a row: its numbers may begin with a date that nobody understands.
+fn no_rows(bytes: &[u8], line_end: u8, path: &Path) -> Error {
+    let name = path.display();
+    for (at, line) in bytes.split(|&b| b == line_end).enumerate() {
+        let field = Dialect::of(line).fields(line).next().unwrap_or_default();
+        if date::is_unknown(field) {
+            return Error::data(format!(
+                "line {} of {name} begins with '{}', a date that can be read in two ways or none: \
+                 write 2024-12-31 13:00:00.5, 2024/12/31 13:00:00.5, 31.12.2024 13:00:00.5, the \
+                 same with a T between, or a number",
+                at + 1,
+                String::from_utf8_lossy(field)
+            ));
+        }
+    }
+    Error::data(format!("{name} holds no row of numbers"))
+}
+
+/// Refuses a table of several IMUs, unless somebody said which columns are meant; a survey takes the
+/// first of them and has something to tell.
+fn several(names: &[&[u8]], path: &Path, options: &ReadOptions) -> Result<Option<Note>, Error> {
+    if options.map.is_some() || options.columns.is_some() {
+        return Ok(None);
+    }
+    let Some(listed) = beside::several_imus(names, sensor_by_name(path)) else { return Ok(None) };
+    let several = format!("{} has columns of several IMUs: {listed}", path.display());
+    if options.survey {
+        let taken = format!("{several}; the first are read, --map t=NAME,gx=NAME,… reads others");
+        return Ok(Some(Note::Warning(taken)));
+    }
+    Err(Error::usage(format!(
+        "{several}; choose with --map t=NAME,gx=NAME,… or --columns t,gx,gy,gz,ax,ay,az,-,…"
+    )))
 }
 
 impl Layout {
@@ -118,7 +161,7 @@ impl Layout {
         let line_end =
             if bytes.contains(&b'\n') || !bytes.contains(&b'\r') { b'\n' } else { b'\r' };
         let Some(start) = Start::of(bytes, line_end) else {
-            return Err(Error::data(format!("{name} holds no row of numbers")));
+            return Err(no_rows(bytes, line_end, path));
         };
         let first = start.rows.first().copied().unwrap_or_default();
         let mut dialect = Dialect::of(first);
@@ -138,6 +181,8 @@ impl Layout {
                 found.columns.len()
             )));
         }
+        let names = start.names(dialect, fields.len());
+        let several = several(&names, path, options)?;
         let time_at = found.columns.iter().position(|c| *c == Column::Time);
         let is_text = |at: usize| {
             let field = fields.get(at).copied().unwrap_or_default();
@@ -153,7 +198,8 @@ impl Layout {
             celsius: found.celsius,
             lines_before: start.lines_before,
             bytes_before: start.bytes_before,
-            notes: Vec::new(),
+            not_taken: beside::not_taken(&names, &found.columns, &fields),
+            notes: several.into_iter().collect(),
         };
         let name = name.to_string();
         let header = format!("the header of {name}");
@@ -164,7 +210,8 @@ impl Layout {
             layout.time = Time::Number(granted.time(options.time_unit, &times)?.exponent());
         }
         let (factors, notes) = granted.sensors()?;
-        (layout.rate, layout.force, layout.notes) = (factors.rate, factors.force, notes);
+        (layout.rate, layout.force) = (factors.rate, factors.force);
+        layout.notes.extend(notes);
         if layout.time != Time::Text {
             // A day beside a number is no part of it.
             for column in found.columns.iter_mut().filter(|c| **c == Column::Date) {

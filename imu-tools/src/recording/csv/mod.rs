@@ -8,6 +8,7 @@
 //! so that sensors of different rates share a file; a field that is no finite number is a reading
 //! that failed.
 
+mod beside;
 pub(super) mod celsius;
 pub(super) mod columns;
 mod date;

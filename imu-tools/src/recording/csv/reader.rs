@@ -5,7 +5,7 @@ use super::layout::{Layout, is_aside};
 use super::row::{self, Fault};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
-use crate::recording::{BLOCK_SAMPLES, Block, Note, ReadOptions, Source, Stream};
+use crate::recording::{BLOCK_SAMPLES, Block, Note, ReadOptions, Source, Stream, TABLE};
 
 /// So much of the start is looked at to understand the table.
 const AHEAD: usize = 64 * 1024;
@@ -123,8 +123,17 @@ impl Source for CsvReader {
     }
 
     fn streams(&self) -> Vec<Stream> {
-        let name = format!("{} columns", self.layout.columns.len());
-        vec![Stream { name, type_name: "table".into(), messages: self.rows, used: true }]
+        let table = |name: String, used: bool| Stream {
+            name,
+            type_name: TABLE.into(),
+            messages: self.rows,
+            used,
+        };
+        let mut streams = vec![table(format!("{} columns", self.layout.columns.len()), true)];
+        if !self.layout.not_taken.is_empty() {
+            streams.push(table(self.layout.not_taken.clone(), false));
+        }
+        streams
     }
 
     fn gyroscope(&self) -> &str {

@@ -8,7 +8,7 @@ use super::columns::Column;
 use super::dialect::Separator;
 use super::layout::{Layout, Time};
 use super::number;
-use crate::recording::{Block, Sample, Temperature};
+use crate::recording::{Block, Sample, Temperature, TimeUnit};
 
 /// Why a row cannot be read: the column (from 1) and what is wrong with it.
 pub struct Fault {
@@ -137,8 +137,19 @@ fn by_fields(layout: &Layout, line: &[u8]) -> Result<Row, Fault> {
             column: at + 1,
             what: format!("'{}' is no {what}", String::from_utf8_lossy(excerpt(field))),
         };
-        let time =
-            |time: Time| time.nanoseconds(layout.dialect, field).ok_or_else(|| fault("time"));
+        let time = |time: Time| {
+            time.nanoseconds(layout.dialect, field).ok_or_else(|| match time {
+                Time::Number(exponent) if is_large(layout.dialect.value(field)) => {
+                    let unit = TimeUnit::of_exponent(exponent).symbol();
+                    let field = String::from_utf8_lossy(excerpt(field));
+                    let what = format!(
+                        "'{field}' is too large a time in {unit}: --time-unit says its unit"
+                    );
+                    Fault { column: at + 1, what }
+                }
+                _ => fault("time"),
+            })
+        };
         let value = || match field {
             [] => Ok(None),
             field => layout.dialect.value(field).map(Some).ok_or_else(|| fault("number")),
@@ -172,6 +183,11 @@ fn by_fields(layout: &Layout, line: &[u8]) -> Result<Row, Fault> {
         }
     }
     Ok(row)
+}
+
+/// Whether this is a number, and too large to be a small one.
+fn is_large(value: Option<f64>) -> bool {
+    value.is_some_and(|value| value.is_finite() && value.abs() > 1.0)
 }
 
 /// The start of a field, to be shown.

@@ -116,6 +116,14 @@ impl Joined {
             Some(gap) => {
                 Ok(format!("{own} goes on {:.3} s after {} ends", gap as f64 * 1e-9, self.name))
             }
+            None if overlap(self.last, starts) => {
+                return Err(Error::data(format!(
+                    "{} and {own} are of one time and have a sensor each: make one recording of \
+                     both, such as a table with the columns of either, in which a field is empty \
+                     where its sensor has no sample",
+                    self.name
+                )));
+            }
             None => Err(format!(
                 "{own} and {} have no sensor in common: no difference spans both",
                 self.name
@@ -137,9 +145,11 @@ impl Joined {
         self.name = own;
         let sensors = [self.source.gyroscope(), self.source.accelerometer()];
         for (sensor, (here, first)) in
-            Sensor::BOTH.into_iter().zip(sensors.iter().zip(&self.sensors))
+            Sensor::BOTH.into_iter().zip(sensors.iter().zip(&mut self.sensors))
         {
-            if here != first {
+            if first.is_empty() {
+                (*here).clone_into(first);
+            } else if !here.is_empty() && here != first {
                 self.notes.push(Note::Info(format!(
                     "{}: the {} is {here}, where the first file has {first}",
                     self.name,
@@ -238,6 +248,12 @@ impl Source for Joined {
 fn gap(last: [Option<i64>; 2], first: [Option<i64>; 2]) -> Option<i64> {
     let gaps = last.iter().zip(first);
     gaps.filter_map(|(last, first)| Some(first?.saturating_sub((*last)?))).min()
+}
+
+/// Whether one file begins before the other ends, whatever the sensor.
+fn overlap(last: [Option<i64>; 2], first: [Option<i64>; 2]) -> bool {
+    let (end, start) = (last.into_iter().flatten().max(), first.into_iter().flatten().min());
+    start.zip(end).is_some_and(|(start, end)| start <= end)
 }
 
 #[cfg(test)]

@@ -126,6 +126,13 @@ pub fn columns(
     options: &ReadOptions,
     name: &str,
 ) -> Result<Columns, Error> {
+    let is_object = |c: &Candidate| matches!(&c.scalar, Err(kind) if kind.ends_with('O'));
+    if !candidates.is_empty() && candidates.iter().all(is_object) {
+        return Err(Error::data(format!(
+            "{name} holds '|O', objects of Python, which cannot be read: save it as numbers, with \
+             array.astype(float)"
+        )));
+    }
     let names: Vec<&[u8]> = candidates.iter().map(|c| c.name.as_bytes()).collect();
     if let Some(map) = &options.map {
         return Columns::from_map(map, &names)

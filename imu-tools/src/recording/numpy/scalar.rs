@@ -104,10 +104,10 @@ impl Scalar {
         (whole as i64).checked_mul(scale)?.checked_add((part * scale as f64).round() as i64)
     }
 
-    /// The number at `at` as it would be written.
+    /// The number at `at` as it would be written, a float with a point or an exponent.
     pub fn text(self, record: &[u8], at: usize) -> Option<String> {
         match self.kind {
-            Kind::Float => self.value(record, at).map(|value| value.to_string()),
+            Kind::Float => self.value(record, at).map(|value| format!("{value:?}")),
             _ => self.whole(record, at).map(|whole| whole.to_string()),
         }
     }

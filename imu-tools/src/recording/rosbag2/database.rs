@@ -77,9 +77,9 @@ impl DatabaseReader {
     pub fn open(input: Input, options: &ReadOptions) -> Result<Self, Error> {
         let path = input.path().to_owned();
         let name = path.display();
-        if options.columns.is_some() || options.time_unit.is_some() {
+        if options.are_for_a_table() {
             return Err(Error::usage(format!(
-                "{name} is a rosbag2: --columns and --time-unit are for tables, --topic and \
+                "{name} is a rosbag2: --columns, --map and --time-unit are for tables, --topic and \
                  --bag-time are for recordings of ROS"
             )));
         }

@@ -212,7 +212,11 @@ impl Choice {
                 ));
             }
         }
-        let listed: Vec<String> = all.iter().take(LISTED).map(Subscription::label).collect();
+        // Whoever asked wants an IMU: a log has many topics that are none.
+        let mut listed: Vec<&Subscription> = all.iter().collect();
+        listed.sort_by_key(|subscription| Kind::of(&subscription.topic).is_none());
+        let listed: Vec<String> =
+            listed.into_iter().take(LISTED).map(Subscription::label).collect();
         let mut listed = listed.join(", ");
         if all.len() > LISTED {
             listed.push_str(&format!(" and {} more", all.len() - LISTED));

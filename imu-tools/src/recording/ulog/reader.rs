@@ -62,9 +62,9 @@ impl UlogReader {
     /// # Errors
     /// When this is no ULog, or has no topic that fits, or several.
     pub fn open(mut input: Input, options: &ReadOptions) -> Result<Self, Error> {
-        if options.columns.is_some() || options.time_unit.is_some() || options.bag_time {
+        if options.are_for_a_table() || options.bag_time {
             return Err(Error::usage(format!(
-                "{} is a ULog: --columns and --time-unit are for tables, --bag-time is for bags",
+                "{} is a ULog: --columns, --map and --time-unit are for tables, --bag-time is for bags",
                 input.path().display()
             )));
         }

@@ -72,9 +72,9 @@ impl BagReader {
     /// # Errors
     /// When this is no bag, is encrypted, or has no topic that fits, or several.
     pub fn open(mut input: Input, options: &ReadOptions) -> Result<Self, Error> {
-        if options.columns.is_some() || options.time_unit.is_some() {
+        if options.are_for_a_table() {
             return Err(Error::usage(format!(
-                "{} is a bag: --columns and --time-unit are for tables, --topic and --bag-time \
+                "{} is a bag: --columns, --map and --time-unit are for tables, --topic and --bag-time \
                  are for bags",
                 input.path().display()
             )));

@@ -61,9 +61,9 @@ impl McapReader {
     /// When this is no MCAP file, or has not exactly one topic that fits.
     pub fn open(mut input: Input, options: &ReadOptions) -> Result<Self, Error> {
         let path = input.path().display().to_string();
-        if options.columns.is_some() || options.time_unit.is_some() {
+        if options.are_for_a_table() {
             return Err(Error::usage(format!(
-                "{path} is an MCAP file: --columns and --time-unit are for tables, --topic and \
+                "{path} is an MCAP file: --columns, --map and --time-unit are for tables, --topic and \
                  --bag-time are for recordings of ROS"
             )));
         }
