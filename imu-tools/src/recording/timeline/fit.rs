@@ -159,15 +159,15 @@ fn least(steps: &[f64], usual: f64) -> Option<f64> {
     median(ones)
 }
 
-/// Whether the long steps are the pauses between bunches: the usual step is far less than the mean,
-/// and of the long ones, which are more than one in a hundred, most are many usual steps long, or no whole number of them. Losses as
-/// frequent as that are short.
+/// Whether the long steps are the pauses between bunches: the usual step is less than the mean, and
+/// of the long ones, which are more than one in a hundred, most are many usual steps long, or no whole
+/// number of them. Losses as frequent as that are short.
 fn bunched(steps: &[f64], usual: f64) -> bool {
     let mean = steps.iter().sum::<f64>() / steps.len() as f64;
     let multiples: Vec<f64> = steps.iter().map(|d| d / usual).filter(|m| *m > 1.5).collect();
     let odd = multiples.iter().filter(|m| **m > 4.0 || (*m - m.round()).abs() > 0.2).count();
     let often = multiples.len() >= 8 && multiples.len() * 100 > steps.len();
-    often && mean > 1.5 * usual && odd * 2 > multiples.len()
+    often && mean > 1.2 * usual && odd * 2 > multiples.len()
 }
 
 /// Which samples are consecutive, by a grid that follows the stamps fast.

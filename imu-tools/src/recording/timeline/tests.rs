@@ -451,3 +451,13 @@ fn stamps_without_a_rate_get_a_possible_one() {
         assert_eq!(summary.samples, samples.len() as u64);
     }
 }
+
+/// Jitter that is spread evenly gives steps of two lengths only, of which the shorter is no period.
+#[test]
+fn steps_of_two_lengths_are_jitter() {
+    let stamp = |i: i64| START + i * 20_000_000 + (i * 7_639_320_225) % 12_000_001 - 6_000_000;
+    let stream: Vec<_> = (0..60_000).map(|i| (i, stamp(i))).collect();
+    let outcome = run(&stream, 4096);
+    assert_exact(&outcome, 0);
+    assert!((outcome.summary.rate_hz / 50.0 - 1.0).abs() < 1e-5, "{}", told(&outcome.summary));
+}
