@@ -496,7 +496,7 @@ fn what_is_no_log_or_has_no_imu_is_told_in_a_sentence() {
     log.extend(subscription(1, 1, "sensor_gyro"));
     let (code, text) = refusal(&log, &topic("7"));
     assert_eq!(code, 2);
-    assert!(text.ends_with("it has sensor_gyro:0, battery:0"), "{text}");
+    assert!(text.ends_with("it has sensor_gyro:1, battery:0"), "{text}");
     let mut log = definitions(&["sensor_gyro:uint64_t timestamp;float x;"]);
     log.extend(subscription(0, 0, "sensor_gyro"));
     let unreadable = "topic sensor_gyro:0 of a.ulg cannot be read: it has no field y";

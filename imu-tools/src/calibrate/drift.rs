@@ -23,6 +23,9 @@ use super::block_means::{Block, BlockMeans};
 
 /// Standard deviations that noise alone does not go.
 const TOO_FAR: f64 = 5.0;
+/// Noise is estimated anew until no more than this part of the record is left to look at: a longer
+/// rest shows little more of it.
+const LEARN: usize = 8;
 /// A stretch of fewer blocks is not looked at.
 const FEWEST: usize = 16;
 /// Octaves of a ladder of blocks that have fewer than four windows, and are not used.
@@ -82,11 +85,17 @@ pub(super) fn examine(
 
     // From the middle towards the beginning.
     let half = first.len() / 2;
-    let noise = without_start(&octaves, means, half)
-        .map(|axis| Noise::of(&fit_noise_from(&axis, sampling, from)));
+    let noise_after = |cut: usize| {
+        without_start(&octaves, means, cut)
+            .map(|axis| Noise::of(&fit_noise_from(&axis, sampling, from)))
+    };
+    let mut noise = noise_after(half);
     let mut cut = half;
     let mut end_of_warm_up = None;
     while cut >= FEWEST {
+        if cut < half && cut * LEARN >= first.len() {
+            noise = noise_after(cut);
+        }
         let strange = |from: usize| {
             let stretch = first.get(from..cut).unwrap_or_default();
             goes_too_far(stretch, block_s, &noise).is_some()

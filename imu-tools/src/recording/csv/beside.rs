@@ -69,8 +69,9 @@ mod tests {
 
     #[test]
     fn a_sensor_with_all_axes_twice_is_two() {
-        let two = several_imus(&fields("t,gx1,g1_x,g1_y,g1_z,g2_x,g2_y,g2_z,ax,ay,az"), None);
-        assert_eq!(two.as_deref(), Some("g1_x, g1_y, g1_z, g2_x, g2_y, g2_z"));
+        let two =
+            several_imus(&fields("t,imu1_gx,imu1_gy,imu1_gz,imu2_gx,imu2_gy,imu2_gz,ax,ay,az"), None);
+        assert_eq!(two.as_deref(), Some("imu1_gx, imu1_gy, imu1_gz, imu2_gx, imu2_gy, imu2_gz"));
         for one in [
             "t,gx,gy,gz,ax,ay,az",
             "t,gyro_x,gyro_y,gyro_z,gyro_x_bias,gyro_y_bias,gyro_z_bias",
