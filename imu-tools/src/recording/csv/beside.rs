@@ -10,7 +10,11 @@ const SHOWN: usize = 24;
 /// The columns of a sensor that has all of its axes more than once, by their names; `None` where each
 /// sensor is there once.
 pub fn several_imus(names: &[&[u8]], hint: Option<Sensor>) -> Option<String> {
-    let columns: Vec<Column> = names.iter().map(|text| Name::new(text).meaning(hint)).collect();
+    let reading = |text: &&[u8]| match Name::new(text).meaning(hint) {
+        _ if is_about_readings(text) => Column::Other,
+        column => column,
+    };
+    let columns: Vec<Column> = names.iter().map(reading).collect();
     let twice = |sensor: fn(u8) -> Column| {
         [0, 1, 2].iter().all(|&axis| columns.iter().filter(|&&c| c == sensor(axis)).count() > 1)
     };
@@ -45,6 +49,14 @@ pub fn not_taken(names: &[&[u8]], columns: &[Column], row: &[&[u8]]) -> String {
     listed(&left, FEW)
 }
 
+/// Whether a column holds something about readings (their bias, their scatter, what gravity leaves of
+/// them) and not readings.
+fn is_about_readings(text: &[u8]) -> bool {
+    const ABOUT: [&str; 8] = ["bias", "offset", "cov", "var", "std", "sigma", "err", "free"];
+    let name = name(text).to_lowercase();
+    ABOUT.iter().any(|word| name.contains(word))
+}
+
 /// A column's name as a sentence shows it.
 fn name(text: &[u8]) -> String {
     String::from_utf8_lossy(text).trim().to_owned()
@@ -69,8 +81,10 @@ mod tests {
 
     #[test]
     fn a_sensor_with_all_axes_twice_is_two() {
-        let two =
-            several_imus(&fields("t,imu1_gx,imu1_gy,imu1_gz,imu2_gx,imu2_gy,imu2_gz,ax,ay,az"), None);
+        let two = several_imus(
+            &fields("t,imu1_gx,imu1_gy,imu1_gz,imu2_gx,imu2_gy,imu2_gz,ax,ay,az"),
+            None,
+        );
         assert_eq!(two.as_deref(), Some("imu1_gx, imu1_gy, imu1_gz, imu2_gx, imu2_gy, imu2_gz"));
         for one in [
             "t,gx,gy,gz,ax,ay,az",
