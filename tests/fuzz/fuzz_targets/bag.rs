@@ -10,7 +10,6 @@ fuzz_target!(|bytes: &[u8]| {
     let mut file = b"#ROSBAG V2.0\n".to_vec();
     file.extend_from_slice(bytes.strip_prefix(b"#ROSBAG V2.0\n").unwrap_or(bytes));
     let length = file.len();
-    let compressed = file.windows(15).any(|at| at == b"compression=bz2" || at == b"compression=lz4");
     let options = ReadOptions::default();
     let Ok(mut source) = read_from("-".as_ref(), Box::new(Cursor::new(file)), &options) else {
         return;
@@ -22,6 +21,7 @@ fuzz_target!(|bytes: &[u8]| {
         timeline.push(&block.gyroscope, |_| {});
     }
     // A message is 312 bytes long at least, before it is compressed.
-    assert!(compressed || samples * 312 <= length);
+    let compressed = |at: &[u8]| at == b"compression=bz2" || at == b"compression=lz4";
+    assert!(samples * 312 <= length || bytes.windows(15).any(compressed));
     assert!(timeline.finish(|_| {}).samples as usize <= samples);
 });
