@@ -17,8 +17,9 @@
 //! White noise and random walk are exact: r ends at 2 blocks (Allan) or 3 (Hadamard). With flicker
 //! the sum stops at 8 blocks, which makes the result at most 2e-4 of itself too large (the tail is
 //! −0.361/x², Allan, and falls as 1/x⁴, Hadamard). Strides finer than m/512 are summed on a coarser
-//! grid, off by at most 2e-5. So the price is 8 terms at stride m/4 without flicker (Hadamard 12),
-//! at most 4096, whatever M is.
+//! grid, off by at most 2e-5. So there are at most 4096 terms, whatever M is. At strides m, m/2 and
+//! m/4 without flicker there are none: the sum is a quadratic form in the two shares, whose
+//! coefficients are worked out by the compiler.
 //!
 //! ```
 //! use imu_core::allan::{Difference, Mixture, edf, interval};
@@ -101,6 +102,10 @@ pub fn edf(
     let step = stride.max(1) as f64 / m;
     let count = differences as f64;
     let kernel = Kernel::new(difference, m, mixture);
+    if let Some(sums) = kernel.sums(difference, block, stride, differences) {
+        return (count / (1.0 + 2.0 * sums.at(kernel.linear, kernel.cubic, count)))
+            .clamp(1.0, count);
+    }
     let reach = if kernel.flicker == 0.0 { difference.blocks() as f64 } else { FLICKER_REACH };
     let coarse = step * libm::floor(1.0 / (step * GRID)).max(1.0);
     let length = count * step;
@@ -138,6 +143,63 @@ pub fn interval(variance: f64, edf: f64, confidence: f64) -> (f64, f64) {
     (variance * (edf / upper), high)
 }
 
+/// Σ_j r(js/m)² and Σ_j j r(js/m)² of r = linear·L + cubic·C, where L and C are Σ c_i |x + i| and
+/// Σ c_i |x + i|³: coefficients of linear², 2 linear cubic and cubic².
+struct Sums {
+    all: [f64; 3],
+    by_lag: [f64; 3],
+}
+
+impl Sums {
+    /// With s = m/`per_block`.
+    const fn of(difference: Difference, per_block: u32) -> Self {
+        let weights = difference.weights();
+        let mut sums = Self { all: [0.0; 3], by_lag: [0.0; 3] };
+        let mut j = 1;
+        while j < per_block * difference.blocks() as u32 {
+            let x = j as f64 / per_block as f64;
+            let (mut linear, mut cubic) = (0.0, 0.0);
+            let mut i = -3;
+            while i <= 3_i32 {
+                let u = (x + i as f64).abs();
+                let weight = weights[i.unsigned_abs() as usize];
+                linear += weight * u;
+                cubic += weight * u * u * u;
+                i += 1;
+            }
+            let products = [linear * linear, linear * cubic, cubic * cubic];
+            let mut k = 0;
+            while k < 3 {
+                sums.all[k] += products[k];
+                sums.by_lag[k] += j as f64 * products[k];
+                k += 1;
+            }
+            j += 1;
+        }
+        sums
+    }
+
+    /// Σ_j (1 − j/M) r², for M = `count`.
+    fn at(&self, linear: f64, cubic: f64, count: f64) -> f64 {
+        let form = |[ll, lc, cc]: &[f64; 3]| {
+            linear * (linear * ll + 2.0 * cubic * lc) + cubic * cubic * cc
+        };
+        form(&self.all) - form(&self.by_lag) / count
+    }
+}
+
+/// At strides m, m/2, m/4.
+static ALLAN: [Sums; 3] = [
+    Sums::of(Difference::Allan, 1),
+    Sums::of(Difference::Allan, 2),
+    Sums::of(Difference::Allan, 4),
+];
+static HADAMARD: [Sums; 3] = [
+    Sums::of(Difference::Hadamard, 1),
+    Sums::of(Difference::Hadamard, 2),
+    Sums::of(Difference::Hadamard, 4),
+];
+
 /// The correlation r(x) of a mixture: one generating function
 /// G(u) = u (linear + cubic u² + flicker u ln u), scaled so that Σ c_i G(i) = 1.
 struct Kernel {
@@ -161,8 +223,32 @@ impl Kernel {
         let kernel = |linear, cubic, flicker| Self { weights, linear, cubic, flicker };
         let white = white / (total * kernel(1.0, 0.0, 0.0).at(0.0));
         let walk = walk / (total * kernel(-inverse_square, 1.0, 0.0).at(0.0));
-        let flicker = flicker / (total * kernel(0.0, 0.0, 1.0).at(0.0));
+        let flicker = match flicker {
+            0.0 => 0.0,
+            _ => flicker / (total * kernel(0.0, 0.0, 1.0).at(0.0)),
+        };
         kernel(white - walk * inverse_square, walk, flicker)
+    }
+
+    /// The sums that make [`at`](Self::at) needless, where there are some.
+    fn sums(
+        &self,
+        difference: Difference,
+        block: u64,
+        stride: u64,
+        differences: u64,
+    ) -> Option<&'static Sums> {
+        let table = match difference {
+            Difference::Allan => &ALLAN,
+            Difference::Hadamard => &HADAMARD,
+        };
+        // All differences that are correlated at stride m/4 are there.
+        if self.flicker != 0.0 || differences < difference.blocks() * 4 {
+            return None;
+        }
+        let strides = [1, 2, 4].map(|per_block| stride.checked_mul(per_block) == Some(block));
+        let k = strides.iter().position(|&is_it| is_it)?;
+        table.get(k)
     }
 
     /// Σ c_i G(x + i), which is r(x).

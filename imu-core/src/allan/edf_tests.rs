@@ -274,3 +274,31 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     let allowed = 5.0 * 2.0 * libm::sqrt((2.0 + 12.0 / nu) / n);
     assert!((scattered / nu - 1.0).abs() < allowed, "edf {nu}, scatter {scattered}");
 }
+
+/// The sums that the compiler works out, term by term: a few roundings of 1e-16 each.
+#[test]
+fn what_the_compiler_sums_equals_the_sum() {
+    for difference in [Difference::Allan, Difference::Hadamard] {
+        for (block, per_block) in [(1, 1), (4, 1), (64, 2), (8, 4), (1 << 40, 4)] {
+            for (white, random_walk) in [(1.0, 0.0), (0.0, 1.0), (0.7, 0.3), (1e-9, 5.0)] {
+                let mixture = Mixture { white, flicker: 0.0, random_walk };
+                let kernel = Kernel::new(difference, block as f64, mixture);
+                for count in [12_u64, 13, 1000, 1 << 50] {
+                    let stride = block / per_block;
+                    let terms = (1..).map(|j| f64::from(j) / per_block as f64);
+                    let sum: f64 = terms
+                        .take_while(|x| *x < difference.blocks() as f64)
+                        .map(|x| {
+                            let r = kernel.at(x);
+                            (1.0 - x * per_block as f64 / count as f64) * r * r
+                        })
+                        .sum();
+                    let nu = edf(difference, block, stride, count, mixture);
+                    let expected = (count as f64 / (1.0 + 2.0 * sum)).max(1.0);
+                    assert!(kernel.sums(difference, block, stride, count).is_some());
+                    assert!((nu / expected - 1.0).abs() < 1e-13, "{nu} {expected}");
+                }
+            }
+        }
+    }
+}
