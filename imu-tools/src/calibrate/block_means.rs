@@ -33,6 +33,8 @@ pub struct BlockMeans {
     passed: u64,
     /// Samples are kept relative to this, so that a large offset costs no digits.
     reference: [f64; 3],
+    /// All samples since the last [`next_record`](Self::next_record).
+    record: Block,
 }
 
 /// The samples of one block.
@@ -45,26 +47,30 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// The block and these samples, one after the other.
+    /// These samples, one after the other.
     #[inline]
-    fn with(&self, samples: &[[f64; 3]], reference: &[f64; 3]) -> Self {
-        let mut sum = self.sum;
+    fn of<'a>(samples: impl Iterator<Item = &'a [f64; 3]>, reference: &[f64; 3]) -> Self {
+        let mut block = Self::default();
         for sample in samples {
             for axis in 0..3 {
-                sum[axis] += sample[axis] - reference[axis];
+                block.sum[axis] += sample[axis] - reference[axis];
             }
+            block.samples += 1;
         }
-        Self { samples: self.samples + samples.len() as u64, sum }
+        block
+    }
+
+    #[inline]
+    fn add(&mut self, more: &Self) {
+        self.samples += more.samples;
+        for (sum, more) in self.sum.iter_mut().zip(more.sum) {
+            *sum += more;
+        }
     }
 
     fn merge(pair: &[Self]) -> Self {
         let mut both = Self::default();
-        for block in pair {
-            both.samples += block.samples;
-            for (sum, more) in both.sum.iter_mut().zip(block.sum) {
-                *sum += more;
-            }
-        }
+        pair.iter().for_each(|block| both.add(block));
         both
     }
 }
@@ -86,6 +92,7 @@ impl BlockMeans {
             open: Block::default(),
             passed: 0,
             reference: [0.0; 3],
+            record: Block::default(),
         }
     }
 
@@ -95,14 +102,12 @@ impl BlockMeans {
         while !rest.is_empty() {
             let room = usize::try_from(self.length - self.passed).unwrap_or(usize::MAX);
             let (now, later) = rest.split_at(room.min(rest.len()));
-            let with_all = self.open.with(now, &self.reference);
-            self.open = if with_all.sum.iter().all(|sum| sum.is_finite()) {
-                with_all
-            } else {
-                now.iter().filter(|sample| finite(sample)).fold(self.open, |open, sample| {
-                    open.with(std::slice::from_ref(sample), &self.reference)
-                })
-            };
+            let mut piece = Block::of(now.iter(), &self.reference);
+            if !finite(&piece.sum) {
+                piece = Block::of(now.iter().filter(|sample| finite(sample)), &self.reference);
+            }
+            self.open.add(&piece);
+            self.record.add(&piece);
             self.pass(now.len() as u64);
             rest = later;
         }
@@ -131,6 +136,14 @@ impl BlockMeans {
     pub fn next_record(&mut self, reference: [f64; 3]) {
         self.restart();
         self.reference = reference;
+        self.record = Block::default();
+    }
+
+    /// Mean of all samples of the record, and how many.
+    pub(super) fn record_mean(&self) -> ([f64; 3], u64) {
+        let count = self.record.samples.max(1) as f64;
+        let mean = [0, 1, 2].map(|axis| self.reference[axis] + self.record.sum[axis] / count);
+        (mean, self.record.samples)
     }
 
     /// Samples a block, a power of two.

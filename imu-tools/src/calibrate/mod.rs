@@ -46,7 +46,7 @@ pub use temperature::TemperatureRange;
 use imu_core::allan::{AllanLadder, Contradiction, Octave, Parameter};
 
 use crate::error::Error;
-use crate::recording::{Note, Source, Stream, Summary, read_ahead};
+use crate::recording::{Block, Note, Source, Stream, Summary};
 use lane::Lane;
 use sensor::Pipeline;
 use temperature::Thermometer;
@@ -255,7 +255,7 @@ pub struct Examined {
 /// # Errors
 /// What the source says when it cannot be read.
 pub fn examine(
-    source: Box<dyn Source>,
+    mut source: Box<dyn Source>,
     path: &str,
     options: &Options,
     mut progress: impl FnMut(Progress),
@@ -264,28 +264,28 @@ pub fn examine(
     let mut temperature = Thermometer::default();
     let mut samples = 0;
     let mut record = 0;
-    let (mut source, gyroscope, accelerometer) = std::thread::scope(|scope| {
+    let (gyroscope, accelerometer) = std::thread::scope(|scope| {
         let lane = |kind| Lane::new(scope, Pipeline::new(kind, options));
         let (gyroscope, accelerometer) =
             (lane(SensorKind::Gyroscope), lane(SensorKind::Accelerometer));
-        let source = read_ahead(source, |block, at| {
-            if at.record != record {
-                record = at.record;
+        let mut block = Block::default();
+        while source.next_block(&mut block)? {
+            if source.record_number() != record {
+                record = source.record_number();
                 window = Window::new(options);
                 gyroscope.next_record();
                 accelerometer.next_record();
             }
-            window.open(block);
+            window.open(&block);
             temperature.push(&block.temperature);
             samples += block.gyroscope.len().max(block.accelerometer.len()) as u64;
             let range = window.cut(&block.gyroscope);
             gyroscope.take(&mut block.gyroscope, range);
             let range = window.cut(&block.accelerometer);
             accelerometer.take(&mut block.accelerometer, range);
-            progress(Progress { bytes: at.bytes, samples });
-            Ok(())
-        })?;
-        Ok::<_, Error>((source, gyroscope.finish()?, accelerometer.finish()?))
+            progress(Progress { bytes: source.bytes_read(), samples });
+        }
+        Ok::<_, Error>((gyroscope.finish()?, accelerometer.finish()?))
     })?;
     let named = |noise: Option<SensorNoise>, topic: &str| {
         noise.map(|noise| SensorNoise { topic: topic.to_owned(), ..noise })

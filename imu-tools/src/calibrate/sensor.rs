@@ -7,6 +7,9 @@ use super::taken::Taken;
 use super::{Estimator, Options, SensorKind, SensorNoise, Stretch, fits};
 use crate::recording::{Event, Sample, Timeline};
 
+/// Samples that go through all of the pipeline at once: they stay in the first-level cache meanwhile.
+const PIECE: usize = 512;
+
 /// Takes the samples of one sensor as they come.
 pub(super) struct Pipeline {
     kind: SensorKind,
@@ -73,7 +76,9 @@ impl Pipeline {
             self.samples += samples.len() as u64;
         }
         let period_s = self.rough_period_s();
-        self.timeline.push(samples, |event| self.seen.take(event, period_s));
+        for piece in samples.chunks(PIECE) {
+            self.timeline.push(piece, |event| self.seen.take(event, period_s));
+        }
     }
 
     /// Time between samples, near enough to say how many make a second.

@@ -31,8 +31,8 @@ const PEAK: usize = 8;
 const BLOCKS: usize = 512;
 /// Differences of those that show it at least.
 const FEWEST: usize = 8;
-/// The usual is learnt anew after so many.
-const RELEARN: u64 = 8;
+/// The usual is learnt anew after one of so many of those that are there.
+const RELEARN: usize = 8;
 /// Median of the absolute value of a standard normal quantity, and the error of one that was learnt
 /// from n values, relative, over 1/√n.
 const HALF: f64 = 0.674_490;
@@ -65,7 +65,8 @@ pub(super) struct Shifts {
     blocks: VecDeque<([f64; 3], u64)>,
     open: ([f64; 3], usize),
     stretch: u64,
-    seen: u64,
+    /// Blocks since the usual was learnt.
+    new: usize,
     spreads: [Option<Spread>; 2],
 }
 
@@ -81,8 +82,8 @@ impl Shifts {
             }
             self.blocks.push_back((self.open.0.map(|sum| sum / SHORT as f64), self.stretch));
             self.open = ([0.0; 3], 0);
-            self.seen += 1;
-            if self.seen.is_multiple_of(RELEARN) {
+            self.new += 1;
+            if RELEARN * self.new >= self.blocks.len().max(RELEARN * RELEARN) {
                 self.learn(step);
             }
         }
@@ -96,6 +97,8 @@ impl Shifts {
 
     /// Learns what is usual.
     pub(super) fn learn(&mut self, step: [f64; 3]) {
+        self.new = 0;
+        self.blocks.make_contiguous();
         self.spreads = [self.spread(SHORT, step), self.spread(LONG, step)];
     }
 
@@ -104,11 +107,8 @@ impl Shifts {
         // One block between them is more than a transition.
         let span = 2 * many + 1;
         let pairs = || {
-            let last = (self.blocks.len() + 1).saturating_sub(span);
-            (0..last).filter(move |&k| {
-                let at = |k: usize| self.blocks.get(k).map(|block| block.1);
-                at(k) == at(k + span - 1)
-            })
+            let spans = self.blocks.as_slices().0.windows(span);
+            spans.filter(|span| span.first().map(|b| b.1) == span.last().map(|b| b.1))
         };
         let count = pairs().count();
         if count < FEWEST * many {
@@ -116,11 +116,13 @@ impl Shifts {
         }
         let unsure = 1.0 + 2.0 * ERROR_OF_MEDIAN / (count as f64 / many as f64).sqrt();
         let axes = [0, 1, 2].map(|axis| {
-            let sum = |from: usize| {
-                self.blocks.iter().skip(from).take(many).map(|block| block.0[axis]).sum::<f64>()
+            let sum =
+                |blocks: &[([f64; 3], u64)]| blocks.iter().map(|block| block.0[axis]).sum::<f64>();
+            let way = |span: &[([f64; 3], u64)]| {
+                let (before, after) = span.split_at(many);
+                (sum(after.get(1..).unwrap_or_default()) - sum(before)).abs() / many as f64
             };
-            let mut usual: Vec<f64> =
-                pairs().map(|k| (sum(k + many + 1) - sum(k)).abs() / many as f64).collect();
+            let mut usual: Vec<f64> = pairs().map(way).collect();
             let middle = usual.len() / 2;
             let median = *usual.select_nth_unstable_by(middle, f64::total_cmp).1;
             (median / HALF * unsure).max(step[axis] / (windows as f64).sqrt())
@@ -195,8 +197,17 @@ impl Shifts {
             }
         };
         let (m, g) = (many as isize, gap as isize);
-        let before = [at(-m)?, at(-m / 2)?, at(0)?];
-        let after = [at(g)?, at(g + m / 2)?, at(g + m)?];
+        let (first, middle, next, end) = (at(-m)?, at(0)?, at(g)?, at(g + m)?);
+        let beyond = |axis: usize| {
+            let way = end[axis] - next[axis] - middle[axis] + first[axis];
+            way.abs() > BEYOND * many as f64 * spread.axes[axis]
+        };
+        // Hardly ever is there more to look at.
+        if !(0..3).any(beyond) {
+            return None;
+        }
+        let before = [first, at(-m / 2)?, middle];
+        let after = [next, at(g + m / 2)?, end];
         let (m, g) = (many as f64, gap as f64);
         // What white noise does to the difference without the slope, over what it does with it.
         let wider = (1.0 + 4.0 * ((m + g) / m).powi(2)).sqrt();

@@ -14,9 +14,6 @@ pub(super) struct Taken {
     /// What the ladders of the records before this one gathered.
     pub(super) earlier: Option<SensorLadder>,
     pub(super) means: BlockMeans,
-    /// Σ of values less the reference of this record, and how many.
-    sum: [f64; 3],
-    count: u64,
     /// Mean and count of the records before this one; a record without a sample has no count.
     pub(super) records: Vec<([f64; 3], u64)>,
 }
@@ -29,8 +26,6 @@ impl Taken {
             ladder: SensorLadder::new(),
             earlier: None,
             means: BlockMeans::new(),
-            sum: [0.0; 3],
-            count: 0,
             records: Vec::new(),
         }
     }
@@ -50,20 +45,16 @@ impl Taken {
 
     /// Puts the record at hand beside those before it; the next one has limits of its own.
     pub(super) fn close_record(&mut self) {
-        let limits = self.limits.take();
-        if limits.is_some() {
-            let ladder = std::mem::take(&mut self.ladder);
-            match &mut self.earlier {
-                Some(earlier) => earlier.pool(&ladder),
-                None => self.earlier = Some(ladder),
-            }
+        if self.limits.take().is_none() {
+            self.records.push(([0.0; 3], 0));
+            return;
         }
-        let count = std::mem::take(&mut self.count);
-        let mut mean = limits.map_or([0.0; 3], |limits| limits.reference);
-        for (mean, sum) in mean.iter_mut().zip(std::mem::take(&mut self.sum)) {
-            *mean += sum / count.max(1) as f64;
+        let ladder = std::mem::take(&mut self.ladder);
+        match &mut self.earlier {
+            Some(earlier) => earlier.pool(&ladder),
+            None => self.earlier = Some(ladder),
         }
-        self.records.push((mean, count));
+        self.records.push(self.means.record_mean());
     }
 
     /// The limits, learnt from the first values.
@@ -84,13 +75,14 @@ impl Taken {
         let Some(limits) = self.limits else { return };
         match event {
             Event::Values(values) => {
+                let rejected = self.ladder.rejected_samples();
                 self.ladder.extend(values);
-                if limits.hold_all(values) {
-                    self.keep(values, &limits);
+                if self.ladder.rejected_samples() == rejected {
+                    self.means.extend(values);
                 } else {
                     for value in values {
                         if limits.hold(value) {
-                            self.keep(std::slice::from_ref(value), &limits);
+                            self.means.extend(std::slice::from_ref(value));
                         } else {
                             self.means.missing(1);
                         }
@@ -106,17 +98,5 @@ impl Taken {
                 self.means.restart();
             }
         }
-    }
-
-    /// Takes values within the limits into the means.
-    #[inline]
-    fn keep(&mut self, values: &[[f64; 3]], limits: &Limits) {
-        self.means.extend(values);
-        for value in values {
-            for ((sum, x), offset) in self.sum.iter_mut().zip(value).zip(limits.reference) {
-                *sum += x - offset;
-            }
-        }
-        self.count += values.len() as u64;
     }
 }

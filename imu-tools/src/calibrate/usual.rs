@@ -176,17 +176,21 @@ impl Usual {
 
     /// Learns what is usual from all windows of the ring.
     pub(super) fn learn(&mut self) {
-        self.axes = [0, 1, 2].map(|axis| self.axis(axis));
-    }
-
-    fn axis(&self, axis: usize) -> Axis {
         let samples = self.ring.iter().map(|(w, _)| w.samples).max().unwrap_or(2);
         // The logarithm of a variance of n samples of white noise has this spread.
         let white = (2.0 / (samples.max(2) - 1) as f64).sqrt();
-        let many = |values: std::ops::Range<usize>| {
-            self.ring.iter().filter(|(w, _)| values.contains(&w.values[axis])).count()
-        };
-        let (dull, lively) = (many(2..VALUES), many(VALUES..VALUES + 1));
+        let (mut dull, mut lively) = ([0; 3], [0; 3]);
+        for (window, _) in &self.ring {
+            for (axis, &values) in window.values.iter().enumerate() {
+                dull[axis] += usize::from((2..VALUES).contains(&values));
+                lively[axis] += usize::from(values == VALUES);
+            }
+        }
+        self.axes = [0, 1, 2].map(|axis| self.axis(axis, white, dull[axis], lively[axis]));
+    }
+
+    /// What is usual of an axis with so many windows of two or three values, and of more.
+    fn axis(&self, axis: usize, white: f64, dull: usize, lively: usize) -> Axis {
         let often = FEWEST_LIVELY.max(self.ring.len() / ONE_LIVELY_OF);
         if lively >= often && ONE_DULL_OF * dull <= lively {
             let usual = self.axis_of(axis, white, |w| w.values[axis] == VALUES);

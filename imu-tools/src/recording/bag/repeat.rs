@@ -19,23 +19,41 @@ pub struct Repeat {
     payload: usize,
     /// What is wanted of it.
     pub role: Role,
-    bytes: [u8; LONGEST],
+    /// The bits that are fixed, and which ones are.
+    words: [Word; LONGEST / 8],
     /// Where the time stands.
     time: usize,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Word {
+    bits: u64,
+    fixed: u64,
 }
 
 impl Repeat {
     /// The shape of `record`, whose header is `header` bytes long; `None` for an uncommon one.
     pub fn of(record: &[u8], header: usize, role: Role) -> Option<Self> {
         let payload = 8 + header;
-        let mut bytes = [0; LONGEST];
-        bytes.get_mut(..payload)?.copy_from_slice(record.get(..payload)?);
-        let mut fields = record.get(4..4 + header)?;
-        while let Some((field, rest)) = prefixed(fields) {
-            fields = rest;
+        let bytes = record.first_chunk::<LONGEST>().filter(|_| payload <= LONGEST)?;
+        let time = Self::time(record.get(4..4 + header)?)? + 4;
+        let mut words = [Word::default(); LONGEST / 8];
+        for (word, (at, bytes)) in words.iter_mut().zip((0..).step_by(8).zip(bytes.as_chunks().0)) {
+            let is_fixed = |at: usize| at < payload && !(time..time + 8).contains(&at);
+            let fixed = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| if is_fixed(at + k) { 0xff } else { 0 });
+            let fixed = u64::from_ne_bytes(fixed);
+            *word = Word { bits: u64::from_ne_bytes(*bytes) & fixed, fixed };
+        }
+        Some(Self { len: record.len(), payload, role, words, time })
+    }
+
+    /// Where the time stands among the fields of a header.
+    fn time(fields: &[u8]) -> Option<usize> {
+        let mut rest = fields;
+        while let Some((field, after)) = prefixed(rest) {
+            rest = after;
             if field.len() == 13 && field.starts_with(b"time=") {
-                let time = 4 + header - rest.len() - 8;
-                return Some(Self { len: record.len(), payload, role, bytes, time });
+                return Some(fields.len() - rest.len() - 8);
             }
         }
         None
@@ -45,15 +63,14 @@ impl Repeat {
     /// `bytes` hold all of it.
     #[inline]
     pub fn next<'a>(&self, bytes: &'a [u8]) -> Option<((u32, u32), &'a [u8])> {
-        let (head, payload) = bytes.get(..self.len)?.split_at_checked(self.payload)?;
-        let shape = self.bytes.get(..self.payload)?;
-        let (before, rest) = head.split_at_checked(self.time)?;
-        let (same_before, same_rest) = shape.split_at_checked(self.time)?;
-        let (time, after) = rest.split_first_chunk::<8>()?;
-        let (_, same_after) = same_rest.split_first_chunk::<8>()?;
-        let time = u64::from_le_bytes(*time);
-        (before == same_before && after == same_after)
-            .then_some(((time as u32, (time >> 32) as u32), payload))
+        let record = bytes.get(..self.len)?;
+        let head = record.first_chunk::<LONGEST>()?.as_chunks().0;
+        let other = self.words.iter().zip(head).fold(0, |other, (word, bytes)| {
+            other | ((u64::from_ne_bytes(*bytes) ^ word.bits) & word.fixed)
+        });
+        let time = u64::from_le_bytes(*record.get(self.time..)?.first_chunk()?);
+        let payload = record.get(self.payload..)?;
+        (other == 0).then_some(((time as u32, (time >> 32) as u32), payload))
     }
 }
 
@@ -87,13 +104,20 @@ mod tests {
                 push_prefixed(&mut bytes, payload);
                 bytes
             };
-            let shape = Repeat::of(&record(0, 1, b"abc"), 38, role()).unwrap();
-            let next = record(0, 5 << 32 | 4, b"def");
-            assert_eq!(shape.next(&next), Some(((4, 5), &b"def"[..])));
+            let shape = Repeat::of(&record(0, 1, &[7; 60]), 38, role()).unwrap();
+            let next = record(0, 5 << 32 | 4, &[8; 60]);
+            assert_eq!(shape.next(&next), Some(((4, 5), &[8; 60][..])));
             assert_eq!(shape.next(&next[..next.len() - 1]), None);
-            assert_eq!(shape.next(&record(1, 1, b"abc")), None);
-            assert_eq!(shape.next(&record(0, 1, b"ab1")[..]).unwrap().1, b"ab1");
-            assert_eq!(shape.next(&record(0, 1, b"abcd")), None);
+            assert_eq!(shape.next(&record(1, 1, &[7; 60])), None);
+            assert_eq!(shape.next(&record(0, 1, &[7; 61])), None);
+            // All bytes of the header but those of the time are looked at.
+            let time = 4 + if time_first { 9 } else { 30 };
+            for at in 0..46 {
+                let mut other = next.clone();
+                other[at] ^= 0x10;
+                assert_eq!(shape.next(&other).is_some(), (time..time + 8).contains(&at), "{at}");
+            }
+            assert!(Repeat::of(&record(0, 1, b"abc"), 38, role()).is_none());
         }
     }
 }

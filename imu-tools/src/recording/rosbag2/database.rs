@@ -158,7 +158,7 @@ impl DatabaseReader {
             self.lost += 1;
             return Ok(true);
         };
-        self.topics.count(number);
+        self.topics.count(number, 1);
         match self.topics.role(number) {
             Some(role) => match self.rows.bytes(self.data, &mut self.pages)? {
                 Some(payload) => self.taken.message(Recorded { time_ns, payload }, role, block),

@@ -87,11 +87,11 @@ impl Connections {
         true
     }
 
-    /// Counts a message of a connection.
-    pub fn count(&mut self, number: u32) {
+    /// Counts messages of a connection.
+    pub fn count(&mut self, number: u32, messages: u64) {
         let place = self.all.iter().position(|c| c.number == number);
         if let Some(count) = place.and_then(|place| self.messages.get_mut(place)) {
-            *count += 1;
+            *count += messages;
         }
     }
 

@@ -97,10 +97,10 @@ impl Topics {
         self.connections.add(connection)
     }
 
-    /// Counts a message of a connection.
+    /// Counts messages of a connection.
     #[inline]
-    pub fn count(&mut self, number: u32) {
-        self.connections.count(number);
+    pub fn count(&mut self, number: u32, messages: u64) {
+        self.connections.count(number, messages);
     }
 
     /// All topics, those of one name and type as one.

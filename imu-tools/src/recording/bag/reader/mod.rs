@@ -187,10 +187,10 @@ impl BagReader {
                         self.samples.count_malformed();
                     }
                     self.bytes.consume(len as usize);
-                    self.topics.count(conn);
+                    self.topics.count(conn, 1);
                     return Ok(true);
                 }
-                self.topics.count(conn);
+                self.topics.count(conn, 1);
                 self.unknown += u64::from(!self.topics.knows(conn));
             }
             (op::CHUNK, _) => return self.enter_chunk(record),
@@ -214,18 +214,18 @@ impl BagReader {
     fn repeated(&mut self, block: &mut Block) {
         let Some(repeat) = self.repeat else { return };
         let mut bytes = self.bytes.at_hand();
-        let mut used = 0;
+        let mut messages = 0;
         while block.has_room()
             && let Some((time, payload)) = repeat.next(bytes)
         {
             if !self.samples.message(payload, time, repeat.role, block) {
                 self.samples.count_malformed();
             }
-            self.topics.count(repeat.role.number);
-            used += repeat.len;
+            messages += 1;
             bytes = bytes.get(repeat.len..).unwrap_or_default();
         }
-        self.bytes.consume(used);
+        self.topics.count(repeat.role.number, messages);
+        self.bytes.consume(messages as usize * repeat.len);
     }
 
     /// Enters a chunk: its records come next.

@@ -187,7 +187,7 @@ impl McapReader {
             if role.is_some() {
                 self.taken.malformed();
             }
-            self.topics.count(channel);
+            self.topics.count(channel, 1);
             self.messages += 1;
             return self.pass(len);
         }
@@ -210,17 +210,18 @@ impl McapReader {
             let inside = usize::try_from(end.saturating_sub(self.input.offset()));
             bytes = bytes.get(..bytes.len().min(inside.unwrap_or(usize::MAX))).unwrap_or_default();
         }
-        let mut used = 0;
+        let mut messages = 0;
         while block.has_room()
             && let Some((time, payload)) = repeat.next(bytes)
         {
             let time_ns = i64::try_from(time).unwrap_or(i64::MAX);
             self.taken.message(Recorded { time_ns, payload }, repeat.role, block);
-            self.topics.count(repeat.role.number);
-            self.messages += 1;
-            used += repeat.len;
+            messages += 1;
             bytes = bytes.get(repeat.len..).unwrap_or_default();
         }
+        self.topics.count(repeat.role.number, messages);
+        self.messages += messages;
+        let used = messages as usize * repeat.len;
         if let Some(chunk) = &mut self.chunk {
             chunk.add(all.get(..used).unwrap_or_default());
         }
