@@ -120,7 +120,7 @@ fn gravity_in_another_unit() {
             assert!(!said.err.contains("gravity"), "{}", said.err);
             fs::remove_dir_all(&out).expect("written");
             let said = calibrate(&[&path, "-o", &out]);
-            let likely = format!("its unit is probably {unit};");
+            let likely = format!("its unit is probably {unit} and not m/s²;");
             let words = [name, "the accelerometer reads", &likely, "--accel-unit"];
             assert_refused(&said, 1, &words);
             assert!(!folder.names().contains(&"out".to_owned()));

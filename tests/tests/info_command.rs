@@ -81,7 +81,7 @@ fn faults_are_named() {
         (
             "in g",
             |_, _, accel| accel.value = accel.value.map(|x| x / 9.80665),
-            "its unit is probably g; say --accel-unit g",
+            "its unit is probably g and not m/s²; say --accel-unit g",
         ),
         (
             "clock",

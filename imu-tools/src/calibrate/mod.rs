@@ -24,7 +24,7 @@ mod drift;
 mod envelope;
 mod fits;
 pub mod five_terms;
-mod gravity;
+pub(crate) mod gravity;
 mod lane;
 mod limits;
 pub mod maximum_likelihood;

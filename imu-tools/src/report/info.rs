@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::json::AXES;
 use super::table::{duration, short};
-use crate::calibrate::{Examined, SensorKind, SensorNoise};
+use crate::calibrate::{Examined, SensorKind, SensorNoise, gravity};
 use crate::recording::Stream;
 
 /// For a person at a terminal.
@@ -98,7 +98,7 @@ fn sensor(text: &mut String, sensor: &SensorNoise) {
     if !any {
         row("values", "none is finite, or small enough for a sensor".into());
     } else if sensor.kind == SensorKind::Accelerometer {
-        let norm = decimal(sensor.mean.iter().map(|x| x * x).sum::<f64>().sqrt());
+        let norm = decimal(gravity::norm(sensor.mean));
         row("norm of mean", format!("{norm} m/s² (gravity is 9.78 to 9.83)"));
     }
     let constant = checks.stuck == [true; 3];

@@ -5,7 +5,7 @@ use super::layout::{Layout, is_aside};
 use super::row::{self, Fault};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
-use crate::recording::{BLOCK_SAMPLES, Block, Note, ReadOptions, Source, Stream, TABLE};
+use crate::recording::{Block, Note, ReadOptions, Source, Stream, TABLE};
 
 /// So much of the start is looked at to understand the table.
 const AHEAD: usize = 64 * 1024;
@@ -110,7 +110,7 @@ impl CsvReader {
 impl Source for CsvReader {
     fn next_block(&mut self, block: &mut Block) -> Result<bool, Error> {
         block.clear();
-        while block.gyroscope.len() < BLOCK_SAMPLES && block.accelerometer.len() < BLOCK_SAMPLES {
+        while block.has_room() {
             let Some(len) = self.next_line()? else { break };
             self.line += 1;
             match self.row(len, block) {
@@ -119,7 +119,7 @@ impl Source for CsvReader {
             }
             self.input.consume(len);
         }
-        Ok(!block.gyroscope.is_empty() || !block.accelerometer.is_empty())
+        Ok(!block.is_empty())
     }
 
     fn streams(&self) -> Vec<Stream> {
