@@ -193,13 +193,19 @@ fn stretches(means: &BlockMeans, cut: usize) -> impl Iterator<Item = &[Block]> {
 fn ladder<const ORDER: usize>(means: &BlockMeans, cut: usize) -> Ladder<f64, 3, LEVELS, 4, ORDER> {
     type Any<const ORDER: usize> = Ladder<f64, 3, LEVELS, 4, ORDER>;
     let mut ladder = Any::with_reference([0.0; 3], [Any::<ORDER>::limit(); 3]).unwrap_or_default();
+    let is_there = |block: &Block| block.samples > 0 && 2 * block.samples >= means.length();
+    let mut run = Vec::new();
     for stretch in stretches(means, cut) {
         ladder.restart();
-        for block in stretch {
-            if block.samples > 0 && 2 * block.samples >= means.length() {
-                ladder.push(&block.sum.map(|sum| sum / block.samples as f64));
+        for blocks in stretch.chunk_by(|a, b| is_there(a) == is_there(b)) {
+            if blocks.first().is_some_and(is_there) {
+                run.clear();
+                run.extend(
+                    blocks.iter().map(|block| block.sum.map(|sum| sum / block.samples as f64)),
+                );
+                ladder.extend(&run);
             } else {
-                ladder.missing(1);
+                ladder.missing(blocks.len() as u64);
             }
         }
     }

@@ -46,6 +46,7 @@ pub mod poses;
 mod ros2;
 pub mod rosbag2;
 mod sensor;
+mod shape;
 pub mod timeline;
 mod topics;
 pub mod ulog;

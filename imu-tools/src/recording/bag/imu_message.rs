@@ -17,6 +17,9 @@ pub const DEFINITION: &str = include_str!("sensor_msgs_Imu.txt");
 /// Bytes of the header before the text of its frame.
 const HEADER: usize = 16;
 
+/// Where in it the length of that text stands.
+pub const FRAME: usize = 12;
+
 /// What is wanted of a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImuMessage {
@@ -35,14 +38,19 @@ impl ImuMessage {
         let (header, rest) = bytes.split_first_chunk::<HEADER>()?;
         let word = |at: usize| header.get(at..at + 4).and_then(|b| b.try_into().ok());
         let (sec, nsec) = (u32::from_le_bytes(word(4)?), u32::from_le_bytes(word(8)?));
-        let frame = u32::from_le_bytes(word(12)?) as usize;
-        let body: &[u8; imu_body::LEN] = rest.get(frame..)?.try_into().ok()?;
+        let frame = u32::from_le_bytes(word(FRAME)?) as usize;
+        Some(Self::of((sec, nsec), rest.get(frame..)?.try_into().ok()?))
+    }
+
+    /// A message with this stamp and these doubles.
+    #[inline]
+    pub fn of(stamp: (u32, u32), body: &[u8; imu_body::LEN]) -> Self {
         // The compiler sees that it is there.
         let (rate, force) = imu_body::read(|at| {
             let bytes = body.get(at..at + 8).and_then(|b| b.try_into().ok());
             f64::from_le_bytes(bytes.unwrap_or([0; 8]))
         });
-        Some(Self { stamp: (sec, nsec), rate, force })
+        Self { stamp, rate, force }
     }
 }
 

@@ -1,50 +1,31 @@
-//! The shape that a topic's messages repeat: found once, then only compared.
-//!
-//! All records of one connection differ in their time and payload alone, as long as the frame keeps
-//! its length. Comparing two stretches of bytes is several times faster than reading the fields of
-//! each header anew.
+//! The [`Shape`] of a topic's messages, and where their time and readings stand in it.
 
+use super::imu_message::{FRAME, ImuMessage};
 use super::record::prefixed;
+use crate::recording::imu_body;
+use crate::recording::shape::Shape;
 use crate::recording::topics::Role;
 
-/// Headers are 38 bytes long, and a little more where a recorder adds fields.
-const LONGEST: usize = 96;
-
-/// Length and fixed bytes of a message record.
+/// Length and fixed bytes of an IMU's message record.
 #[derive(Clone, Copy, Debug)]
 pub struct Repeat {
-    /// Length of the whole record.
-    pub len: usize,
-    /// Where its payload starts.
-    payload: usize,
     /// What is wanted of it.
     pub role: Role,
-    /// The bits that are fixed, and which ones are.
-    words: [Word; LONGEST / 8],
-    /// Where the time stands.
+    shape: Shape,
+    /// Where its time and its payload stand.
     time: usize,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Word {
-    bits: u64,
-    fixed: u64,
+    payload: usize,
 }
 
 impl Repeat {
     /// The shape of `record`, whose header is `header` bytes long; `None` for an uncommon one.
     pub fn of(record: &[u8], header: usize, role: Role) -> Option<Self> {
         let payload = 8 + header;
-        let bytes = record.first_chunk::<LONGEST>().filter(|_| payload <= LONGEST)?;
+        ImuMessage::parse(record.get(payload..)?).filter(|_| !role.temperature)?;
         let time = Self::time(record.get(4..4 + header)?)? + 4;
-        let mut words = [Word::default(); LONGEST / 8];
-        for (word, (at, bytes)) in words.iter_mut().zip((0..).step_by(8).zip(bytes.as_chunks().0)) {
-            let is_fixed = |at: usize| at < payload && !(time..time + 8).contains(&at);
-            let fixed = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| if is_fixed(at + k) { 0xff } else { 0 });
-            let fixed = u64::from_ne_bytes(fixed);
-            *word = Word { bits: u64::from_ne_bytes(*bytes) & fixed, fixed };
-        }
-        Some(Self { len: record.len(), payload, role, words, time })
+        let frame = payload + FRAME..payload + FRAME + 4;
+        let shape = Shape::of(record, &[0..time, time + 8..payload, frame])?;
+        Some(Self { role, shape, time, payload })
     }
 
     /// Where the time stands among the fields of a header.
@@ -59,23 +40,28 @@ impl Repeat {
         None
     }
 
-    /// The time (seconds, nanoseconds) and payload of the next record, if it has this shape and
+    /// Length of the whole record.
+    pub fn len(&self) -> usize {
+        self.shape.len()
+    }
+
+    /// The time (seconds, nanoseconds) and message of the next record, if it has this shape and
     /// `bytes` hold all of it.
     #[inline]
-    pub fn next<'a>(&self, bytes: &'a [u8]) -> Option<((u32, u32), &'a [u8])> {
-        let record = bytes.get(..self.len)?;
-        let head = record.first_chunk::<LONGEST>()?.as_chunks().0;
-        let other = self.words.iter().zip(head).fold(0, |other, (word, bytes)| {
-            other | ((u64::from_ne_bytes(*bytes) ^ word.bits) & word.fixed)
-        });
-        let time = u64::from_le_bytes(*record.get(self.time..)?.first_chunk()?);
-        let payload = record.get(self.payload..)?;
-        (other == 0).then_some(((time as u32, (time >> 32) as u32), payload))
+    pub fn next(&self, bytes: &[u8]) -> Option<((u32, u32), ImuMessage)> {
+        let record = self.shape.next(bytes)?;
+        let time = |at: usize| {
+            let time = u64::from_le_bytes(*record.get(at..)?.first_chunk()?);
+            Some((time as u32, (time >> 32) as u32))
+        };
+        let body = record.last_chunk::<{ imu_body::LEN }>()?;
+        Some((time(self.time)?, ImuMessage::of(time(self.payload + 4)?, body)))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::imu_message::Template;
     use super::super::record::{push_header, push_prefixed};
     use super::*;
     use crate::recording::ReadOptions;
@@ -89,10 +75,15 @@ mod tests {
         topics.role(0).unwrap()
     }
 
+    fn message(k: u32) -> ImuMessage {
+        let rate = Some([f64::from(k), 2.0, 3.0]);
+        ImuMessage { stamp: (k, 7), rate, force: (k < 9).then_some([0.0, 0.0, 9.8]) }
+    }
+
     #[test]
-    fn only_time_and_payload_may_differ() {
+    fn only_times_and_readings_may_differ() {
         for time_first in [false, true] {
-            let record = |conn: u32, time: u64, payload: &[u8]| {
+            let record = |conn: u32, time: u64, frame: &str, k: u32| {
                 let (conn, time) = (conn.to_le_bytes(), time.to_le_bytes());
                 let mut fields: Vec<(&str, &[u8])> =
                     vec![("conn", &conn), ("op", &[2]), ("time", &time)];
@@ -101,23 +92,27 @@ mod tests {
                 }
                 let mut bytes = Vec::new();
                 push_header(&mut bytes, &fields);
-                push_prefixed(&mut bytes, payload);
+                push_prefixed(&mut bytes, Template::new(frame).fill(k, &message(k)));
                 bytes
             };
-            let shape = Repeat::of(&record(0, 1, &[7; 60]), 38, role()).unwrap();
-            let next = record(0, 5 << 32 | 4, &[8; 60]);
-            assert_eq!(shape.next(&next), Some(((4, 5), &[8; 60][..])));
-            assert_eq!(shape.next(&next[..next.len() - 1]), None);
-            assert_eq!(shape.next(&record(1, 1, &[7; 60])), None);
-            assert_eq!(shape.next(&record(0, 1, &[7; 61])), None);
-            // All bytes of the header but those of the time are looked at.
-            let time = 4 + if time_first { 9 } else { 30 };
-            for at in 0..46 {
-                let mut other = next.clone();
-                other[at] ^= 0x10;
-                assert_eq!(shape.next(&other).is_some(), (time..time + 8).contains(&at), "{at}");
+            let shape = Repeat::of(&record(0, 1, "imu", 1), 38, role()).unwrap();
+            for k in [2, 9] {
+                let next = record(0, 5 << 32 | 4, "imu", k);
+                assert_eq!(shape.len(), next.len());
+                assert_eq!(shape.next(&next), Some(((4, 5), message(k))));
+                assert_eq!(shape.next(&next[..next.len() - 1]), None);
             }
-            assert!(Repeat::of(&record(0, 1, b"abc"), 38, role()).is_none());
+            assert_eq!(shape.next(&record(1, 1, "imu", 1)), None);
+            assert_eq!(shape.next(&record(0, 1, "imu0", 1)), None);
+            // All bytes of the header but those of the time are looked at, and the frame's length.
+            let time = 4 + if time_first { 9 } else { 30 };
+            for at in 0..62 {
+                let mut other = record(0, 1, "imu", 1);
+                other[at] ^= 0x10;
+                let free = (time..time + 8).contains(&at) || (46..58).contains(&at);
+                assert_eq!(shape.next(&other).is_some(), free, "{at}");
+            }
+            assert!(Repeat::of(&record(0, 1, "imu", 1)[..300], 38, role()).is_none());
         }
     }
 }

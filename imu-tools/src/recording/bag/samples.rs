@@ -49,6 +49,13 @@ impl Samples {
             return self.temperature(payload, time, to);
         }
         let Some(message) = ImuMessage::parse(payload) else { return false };
+        self.imu(&message, time, role, to);
+        true
+    }
+
+    /// Takes an IMU's message, recorded at `time`.
+    #[inline]
+    pub fn imu(&mut self, message: &ImuMessage, time: (u32, u32), role: Role, to: &mut Block) {
         self.messages += 1;
         self.unstamped += u64::from(message.stamp == (0, 0));
         let stamp_ns = nanoseconds(if self.bag_time { time } else { message.stamp });
@@ -62,7 +69,6 @@ impl Samples {
         {
             to.accelerometer.push(Sample { stamp_ns, value });
         }
-        true
     }
 
     fn temperature(&mut self, payload: &[u8], time: (u32, u32), to: &mut Block) -> bool {

@@ -11,6 +11,9 @@ pub const ENCAPSULATION: usize = 4;
 /// Bytes of a header before the text of its frame: seconds i32, nanoseconds u32, length u32.
 const HEADER: usize = 12;
 
+/// Where in a message the length of that text stands.
+pub const FRAME: usize = ENCAPSULATION + 8;
+
 /// Why a message cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
@@ -51,8 +54,12 @@ impl<'a> Stamped<'a> {
         let (sec, nanosec, frame) = (word(0).cast_signed(), word(4), word(8));
         let end = (HEADER + frame as usize).next_multiple_of(alignment);
         let doubles = fields.get(end..).ok_or(Refusal::Malformed)?;
-        let stamp_ns = i64::from(sec) * 1_000_000_000 + i64::from(nanosec);
-        Ok(Self { stamp_ns, big_endian, doubles })
+        Ok(Self { stamp_ns: nanoseconds(sec, nanosec), big_endian, doubles })
+    }
+
+    /// The doubles, if they are `N / 8` and little-endian, and nothing is behind them.
+    pub fn exactly<const N: usize>(&self) -> Option<&'a [u8; N]> {
+        self.doubles.try_into().ok().filter(|_| !self.big_endian)
     }
 
     /// The doubles, of which there must be `N / 8`; what pads the message behind them is ignored.
@@ -65,6 +72,12 @@ impl<'a> Stamped<'a> {
             _ => Err(Refusal::Malformed),
         }
     }
+}
+
+/// The stamp of a header.
+#[inline]
+pub fn nanoseconds(sec: i32, nanosec: u32) -> i64 {
+    i64::from(sec) * 1_000_000_000 + i64::from(nanosec)
 }
 
 /// A row of doubles, `N` bytes.

@@ -26,6 +26,16 @@ impl ImuMessage {
         let (rate, force) = imu_body::read(|at| body.get(at));
         Ok(Self { stamp_ns: stamped.stamp_ns, rate, force })
     }
+
+    /// A message with this stamp and these little-endian doubles.
+    #[inline]
+    pub fn little_endian(stamp_ns: i64, body: &[u8; imu_body::LEN]) -> Self {
+        let (rate, force) = imu_body::read(|at| {
+            let bytes = body.get(at..at + 8).and_then(|b| b.try_into().ok());
+            f64::from_le_bytes(bytes.unwrap_or_default())
+        });
+        Self { stamp_ns, rate, force }
+    }
 }
 
 /// A message in its wire form, of which only numbers change from one to the next.

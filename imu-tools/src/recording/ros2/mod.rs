@@ -3,7 +3,7 @@
 //! `cdr` is the wire form, `imu_message` the message `sensor_msgs/msg/Imu`, `taken` what becomes of
 //! messages on their way into a [`Block`](super::Block).
 
-mod cdr;
+pub mod cdr;
 mod imu_message;
 mod taken;
 

@@ -109,10 +109,15 @@ impl Taken {
         if role.temperature {
             return self.temperature(time_ns, payload, to);
         }
-        let message = match ImuMessage::parse(payload) {
-            Ok(message) => message,
-            Err(refusal) => return self.refused(refusal),
-        };
+        match ImuMessage::parse(payload) {
+            Ok(message) => self.imu(&message, time_ns, role, to),
+            Err(refusal) => self.refused(refusal),
+        }
+    }
+
+    /// Takes an IMU's message, recorded at `time_ns`.
+    #[inline]
+    pub fn imu(&mut self, message: &ImuMessage, time_ns: i64, role: Role, to: &mut Block) {
         let stamp_ns = self.stamp(message.stamp_ns, time_ns);
         if let Some(value) = message.rate
             && role.gyroscope

@@ -216,16 +216,14 @@ impl BagReader {
         let mut bytes = self.bytes.at_hand();
         let mut messages = 0;
         while block.has_room()
-            && let Some((time, payload)) = repeat.next(bytes)
+            && let Some((time, message)) = repeat.next(bytes)
         {
-            if !self.samples.message(payload, time, repeat.role, block) {
-                self.samples.count_malformed();
-            }
+            self.samples.imu(&message, time, repeat.role, block);
             messages += 1;
-            bytes = bytes.get(repeat.len..).unwrap_or_default();
+            bytes = bytes.get(repeat.len()..).unwrap_or_default();
         }
         self.topics.count(repeat.role.number, messages);
-        self.bytes.consume(messages as usize * repeat.len);
+        self.bytes.consume(messages as usize * repeat.len());
     }
 
     /// Enters a chunk: its records come next.

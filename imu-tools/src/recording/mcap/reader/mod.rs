@@ -10,12 +10,12 @@ mod lost;
 
 use super::chunk::Chunk;
 use super::record::{self, ChunkHead, Fields, HEAD, MESSAGE};
-use super::repeat::Repeat;
+use super::repeat::{self, Repeat};
 use super::{MAGIC, op};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
 use crate::recording::inside::Compression;
-use crate::recording::ros2::{Recorded, Taken};
+use crate::recording::ros2::Taken;
 use crate::recording::topics::Topics;
 use crate::recording::{Block, Note, ReadOptions, Source, Stream};
 
@@ -196,7 +196,11 @@ impl McapReader {
             return self.ended_here();
         }
         let record = self.input.at_hand().get(..len).unwrap_or_default();
-        self.repeat = role.and_then(|role| Repeat::of(record, role));
+        if let (Some(role), Some(message)) = (role, repeat::recorded(record)) {
+            self.taken.message(message, role, block);
+            self.repeat = Repeat::of(record, role);
+        }
+        self.took(channel, 1, len);
         self.repeated(block);
         Ok(true)
     }
@@ -204,26 +208,28 @@ impl McapReader {
     /// Takes the records at hand that repeat the shape of the last message.
     fn repeated(&mut self, block: &mut Block) {
         let Some(repeat) = self.repeat else { return };
-        let all = self.input.at_hand();
-        let mut bytes = all;
+        let mut bytes = self.input.at_hand();
         if let Some(end) = self.chunk.as_ref().and_then(|chunk| chunk.end) {
             let inside = usize::try_from(end.saturating_sub(self.input.offset()));
             bytes = bytes.get(..bytes.len().min(inside.unwrap_or(usize::MAX))).unwrap_or_default();
         }
         let mut messages = 0;
         while block.has_room()
-            && let Some((time, payload)) = repeat.next(bytes)
+            && let Some((time_ns, message)) = repeat.next(bytes)
         {
-            let time_ns = i64::try_from(time).unwrap_or(i64::MAX);
-            self.taken.message(Recorded { time_ns, payload }, repeat.role, block);
+            self.taken.imu(&message, time_ns, repeat.role, block);
             messages += 1;
             bytes = bytes.get(repeat.len..).unwrap_or_default();
         }
-        self.topics.count(repeat.role.number, messages);
+        self.took(repeat.role.number, messages, messages as usize * repeat.len);
+    }
+
+    /// Counts messages of a channel that were taken, and drops their `used` bytes.
+    fn took(&mut self, channel: u32, messages: u64, used: usize) {
+        self.topics.count(channel, messages);
         self.messages += messages;
-        let used = messages as usize * repeat.len;
         if let Some(chunk) = &mut self.chunk {
-            chunk.add(all.get(..used).unwrap_or_default());
+            chunk.add(self.input.at_hand().get(..used).unwrap_or_default());
         }
         self.input.consume(used);
     }
