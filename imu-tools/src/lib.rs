@@ -9,3 +9,4 @@ pub mod output;
 pub mod recording;
 pub mod report;
 pub mod scene;
+pub mod tradeoff;

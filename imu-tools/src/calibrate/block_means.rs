@@ -82,6 +82,9 @@ impl Default for BlockMeans {
 }
 
 impl BlockMeans {
+    /// Memory for blocks, at most, bytes.
+    pub const LARGEST_BYTES: usize = MOST * size_of::<Block>();
+
     /// Nothing collected yet.
     #[must_use]
     pub fn new() -> Self {

@@ -12,6 +12,7 @@ mod progress;
 mod reading;
 mod simulate;
 mod terminal;
+mod tradeoff;
 
 use std::ffi::OsString;
 use std::io;
@@ -40,6 +41,7 @@ enum Command {
     Demo(demo::Demo),
     Info(info::Info),
     Simulate(simulate::Simulate),
+    Tradeoff(tradeoff::Tradeoff),
 }
 
 /// Runs the program on its own arguments.
@@ -60,6 +62,7 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Demo(demo) => demo.run(),
         Command::Info(info) => info.run(),
         Command::Simulate(simulate) => simulate.run(),
+        Command::Tradeoff(tradeoff) => tradeoff.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -13,6 +13,14 @@ pub(super) fn bar(total: u64, doing: &'static str) -> ProgressBar {
     ProgressBar::new(total).with_style(style).with_message(doing).with_finish(clear)
 }
 
+/// The same for records.
+pub(super) fn records(total: u64, doing: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} records {eta}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    let clear = ProgressFinish::AndClear;
+    ProgressBar::new(total).with_style(style).with_message(doing).with_finish(clear)
+}
+
 /// The same for bytes read; a spinner where their number is not known.
 pub(super) fn bytes(total: Option<u64>, doing: &'static str) -> ProgressBar {
     let template = match total {

@@ -3,6 +3,7 @@
 //! [`table`] for a terminal, [`json`] for programs, [`yaml`] for Kalibr and [`formats`] for other
 //! filters, [`csv`] for plots of one's own, [`plot`] for pictures, [`html`] for the report, [`demo`]
 //! for the comparison of several with the truth. All write a [`Calibration`](crate::calibrate::Calibration) into text.
+//! [`tradeoff`] shows what accuracy costs.
 
 pub mod csv;
 pub mod demo;
@@ -12,6 +13,7 @@ pub mod info;
 pub mod json;
 pub mod plot;
 pub mod table;
+pub mod tradeoff;
 mod units;
 pub mod yaml;
 

@@ -23,10 +23,12 @@ mod residual;
 mod scale;
 mod signal;
 mod svg;
+mod tradeoff;
 
 pub use allan::allan;
 pub use residual::residual;
 pub use signal::signal;
+pub use tradeoff::tradeoff;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD as STANDARD;

@@ -1,0 +1,281 @@
+//! What accuracy costs, as a table on a terminal, as JSON, and as a section of a page.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use crate::tradeoff::allan::{
+    Accuracy, Estimator, Gather, Method, NOISES, Row, Scalar, Scatter, Tradeoff,
+};
+
+/// Where the section of a page begins and ends.
+const BEGIN: &str = "<!-- begin: imu tradeoff allan -->";
+const END: &str = "<!-- end: imu tradeoff allan -->";
+
+/// Name of an estimator, of ordinary words.
+#[must_use]
+pub fn name(estimator: &Estimator) -> String {
+    format!("{}, {}, {}", gather(estimator), scalar(estimator), method(estimator))
+}
+
+fn gather(estimator: &Estimator) -> &'static str {
+    match estimator.gather {
+        Gather::Disjoint => "disjoint",
+        Gather::FourWindows => "4 windows",
+        Gather::Overlapping => "all windows",
+        Gather::BlockMeans => "block means",
+    }
+}
+
+fn scalar(estimator: &Estimator) -> &'static str {
+    match estimator.scalar {
+        Scalar::F32 => "f32",
+        Scalar::F64 => "f64",
+    }
+}
+
+fn method(estimator: &Estimator) -> &'static str {
+    match estimator.method {
+        Method::Fit => "fit",
+        Method::MaximumLikelihood => "ML",
+        Method::Slope => "slope",
+    }
+}
+
+/// A title, and rows of cells, of which the first names the columns.
+struct Table {
+    title: String,
+    rows: Vec<Vec<String>>,
+}
+
+/// Columns that say which estimator it is.
+const NAMES: usize = 3;
+
+/// The price of each estimator, and its errors for each noise.
+fn tables(tradeoff: &Tradeoff) -> Vec<Table> {
+    let start = |head: &[&str]| {
+        let names = ["gathered", "in", "read by"];
+        vec![names.iter().chain(head).map(|name| (*name).to_owned()).collect()]
+    };
+    let named = |estimator: &Estimator, cells: Vec<String>| {
+        let names = [gather(estimator), scalar(estimator), method(estimator)];
+        names.into_iter().map(str::to_owned).chain(cells).collect()
+    };
+    let mut prices = start(&["ns/value", "× sum", "ms at end", "state"]);
+    prices.extend(tradeoff.rows.iter().map(|Row { estimator, cost, .. }| {
+        let cells = vec![
+            format!("{:.2}", cost.ns_per_value),
+            format!("{:.1}", cost.ns_per_value / tradeoff.sum_ns),
+            format!("{:.3}", cost.end_ms),
+            bytes(cost.state_bytes),
+        ];
+        named(estimator, cells)
+    }));
+    let mut tables = vec![Table { title: "Price".into(), rows: prices }];
+    for (k, noise) in NOISES.iter().enumerate() {
+        let limit = tradeoff.plan.limit_of_random_walk(noise);
+        let mut errors = start(&["K", "× limit", "median", "in 90 %", "none", "N"]);
+        errors.extend(tradeoff.rows.iter().filter_map(|Row { estimator, accuracy, .. }| {
+            let Accuracy { noise_density, random_walk } = accuracy.get(k)?;
+            let cells = vec![
+                percent(random_walk),
+                format!("{:.2}", random_walk.rms / limit),
+                format!("{:+.1} %", 100.0 * random_walk.median),
+                random_walk.coverage.map_or("-".into(), |part| format!("{:.0} %", 100.0 * part)),
+                format!("{:.0} %", 100.0 * random_walk.without),
+                percent(noise_density),
+            ];
+            Some(named(estimator, cells))
+        }));
+        let period = noise.noise_density / noise.random_walk;
+        tables.push(Table { title: format!("Errors where N/K = {period:.0} s"), rows: errors });
+    }
+    tables
+}
+
+fn percent(scatter: &Scatter) -> String {
+    let digits = if scatter.rms < 0.01 { 3 } else { 1 };
+    format!("{:.digits$} ± {:.digits$} %", 100.0 * scatter.rms, 100.0 * scatter.rms_sd)
+}
+
+fn bytes(bytes: usize) -> String {
+    match bytes {
+        0..10_000 => format!("{bytes} B"),
+        10_000..10_000_000 => format!("{:.1} kB", bytes as f64 / 1e3),
+        _ => format!("{:.1} MB", bytes as f64 / 1e6),
+    }
+}
+
+/// The sentences before a table.
+fn about(tradeoff: &Tradeoff) -> String {
+    let plan = &tradeoff.plan;
+    let limits = NOISES.map(|noise| 100.0 * plan.limit_of_random_walk(&noise));
+    format!(
+        "{} records of three axes at rest, {} h at {} Hz, of each of two noises. No estimator can know K \
+         better than {:.1} % and {:.1} %, nor N better than {:.3} %. A plain sum of the same values takes \
+         {:.2} ns a value.",
+        plan.records,
+        plan.duration_s / 3600.0,
+        plan.rate_hz,
+        limits[0],
+        limits[1],
+        100.0 * plan.limit_of_noise_density(),
+        tradeoff.sum_ns
+    )
+}
+
+const COLUMNS: &str = "\
+K and N: root mean square of the relative error, and how far that itself scatters. × limit: over the \
+least that is possible. in 90 %: how often the 90 % interval holds the true K (a slope has none). \
+none: records from which no K was read. state: memory for three axes. ms at end: once for each axis.";
+
+/// The tables on a terminal.
+#[must_use]
+pub fn table(tradeoff: &Tradeoff) -> String {
+    let mut text = format!("{}\n", about(tradeoff));
+    for Table { title, rows } in tables(tradeoff) {
+        let columns = rows.first().map_or(0, Vec::len);
+        let width = |column: usize| {
+            let cells = rows.iter().filter_map(|row| row.get(column));
+            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..columns).map(width).collect();
+        let _ = write!(text, "\n{title}\n");
+        for row in &rows {
+            for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
+                // Words to the left, numbers to the right.
+                let _ = match column {
+                    0..NAMES => write!(text, "{cell:<width$}  "),
+                    _ => write!(text, "{cell:>width$}  "),
+                };
+            }
+            text.truncate(text.trim_end().len());
+            text.push('\n');
+        }
+    }
+    text + "\n" + COLUMNS + "\n"
+}
+
+/// Everything, for programs.
+#[must_use]
+pub fn json(tradeoff: &Tradeoff) -> Value {
+    let scatter = |s: &Scatter| {
+        json!({
+            "rms": s.rms, "rms_sd": s.rms_sd, "median": s.median, "coverage90": s.coverage,
+            "without": s.without,
+        })
+    };
+    let rows: Vec<_> = tradeoff
+        .rows
+        .iter()
+        .map(|row| {
+            let accuracy = row.accuracy.iter().map(|accuracy| {
+                json!({
+                    "noise_density": scatter(&accuracy.noise_density),
+                    "random_walk": scatter(&accuracy.random_walk),
+                })
+            });
+            json!({
+                "gathered": gather(&row.estimator),
+                "scalar": scalar(&row.estimator),
+                "method": method(&row.estimator),
+                "ns_per_value": row.cost.ns_per_value,
+                "end_ms": row.cost.end_ms,
+                "state_bytes": row.cost.state_bytes,
+                "accuracy": accuracy.collect::<Vec<_>>(),
+            })
+        })
+        .collect();
+    let plan = &tradeoff.plan;
+    let noises = NOISES.map(|noise| {
+        json!({
+            "noise_density": noise.noise_density,
+            "random_walk": noise.random_walk,
+            "limit_of_random_walk": plan.limit_of_random_walk(&noise),
+            "limit_of_noise_density": plan.limit_of_noise_density(),
+        })
+    });
+    json!({
+        "duration_s": plan.duration_s,
+        "rate_hz": plan.rate_hz,
+        "records": plan.records,
+        "seed": plan.seed,
+        "sum_ns_per_value": tradeoff.sum_ns,
+        "noises": noises,
+        "estimators": rows,
+    })
+}
+
+/// The page with this section in the place of the one it had, or behind all others; `picture` is the
+/// name of the plot's file.
+#[must_use]
+pub fn page(before: Option<&str>, tradeoff: &Tradeoff, picture: &str) -> String {
+    const TITLE: &str = "# What accuracy costs\n\nMeasured by `imu tradeoff`; run it to see your own \
+                         machine.\n";
+    let section = section(tradeoff, picture);
+    let before = before.unwrap_or(TITLE);
+    match before.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1))) {
+        Some((head, tail)) => format!("{head}{section}{tail}"),
+        None => format!("{}\n\n{section}\n", before.trim_end()),
+    }
+}
+
+fn section(tradeoff: &Tradeoff, picture: &str) -> String {
+    let plan = &tradeoff.plan;
+    let mut text = format!(
+        "{BEGIN}\n## Estimators of N and K\n\n`imu tradeoff allan --records {} --duration {}s --rate {} \
+         --seed {} -o FOLDER` wrote this section.\n\n{}\n\n![error of K over price]({picture})\n\n",
+        plan.records,
+        plan.duration_s,
+        plan.rate_hz,
+        plan.seed,
+        about(tradeoff)
+    );
+    for Table { title, rows } in tables(tradeoff) {
+        let _ = write!(text, "### {title}\n\n");
+        for (k, row) in rows.iter().enumerate() {
+            let _ = writeln!(text, "| {} |", row.join(" | "));
+            if k == 0 {
+                let rule = (0..row.len()).map(|k| if k < NAMES { "---" } else { "---:" });
+                let _ = writeln!(text, "| {} |", rule.collect::<Vec<_>>().join(" | "));
+            }
+        }
+        text.push('\n');
+    }
+    let _ = write!(text, "{COLUMNS}\n\n{ADVICE}\n{END}");
+    text
+}
+
+const ADVICE: &str = "\
+- On a microcontroller: the disjoint ladder in f32; its state is the smallest, and K costs a few per \
+cent of accuracy.
+- Anywhere else: four windows in f64, what `imu calibrate` does. All windows of a record say no more, \
+and need all of it in memory.
+- Exact maximum likelihood (`--estimator ml`) is as good as can be for white noise and random walk \
+alone, and wrong without a word where there is anything else; the fit of octaves leaves out averaging \
+times that contradict the rest.
+- Slopes are there to compare with: they scatter further than they must, misread N where the walk sets in \
+early, and often read no K at all.";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tradeoff::allan::{Plan, measure};
+
+    #[test]
+    fn a_section_takes_the_place_of_itself_and_of_nothing_else() {
+        let plan = Plan { duration_s: 1000.0, rate_hz: 4.0, records: 2, seed: 3 };
+        let tradeoff = measure(&plan, |_| {}).unwrap();
+        let first = page(None, &tradeoff, "a.svg");
+        assert!(first.starts_with("# What accuracy costs") && first.contains("](a.svg)"));
+        assert_eq!(page(Some(&first), &tradeoff, "a.svg"), first);
+        let other = "# Mine\n\nSome words.\n";
+        let with = page(Some(other), &tradeoff, "b.svg");
+        assert!(with.starts_with(other) && with.matches(BEGIN).count() == 1);
+        let more = format!("{with}\nMore.\n");
+        assert_eq!(page(Some(&more), &tradeoff, "b.svg"), more);
+        // A line for each estimator, in all forms.
+        assert_eq!(table(&tradeoff).lines().filter(|line| line.contains(" f64 ")).count(), 3 * 7);
+        assert_eq!(json(&tradeoff)["estimators"].as_array().unwrap().len(), 11);
+    }
+}

@@ -1,0 +1,11 @@
+//! What accuracy costs: alternatives side by side, their error and their price measured on the machine
+//! that runs this.
+//!
+//! Everything here is measured, nothing looked up: errors by simulating many records of known noise
+//! ([`allan`]), the price by timing the same code on the same kind of data, interleaved with a plain sum
+//! of the same array, so that a busy machine slows both.
+
+pub mod allan;
+mod cost;
+
+pub use cost::Cost;

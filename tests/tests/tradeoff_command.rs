@@ -1,0 +1,55 @@
+//! `imu tradeoff`: what it prints and writes, and what it refuses.
+
+use imu_tests::command::run;
+use imu_tests::recordings::{Folder, number};
+use serde_json::Value;
+
+const SHORT: [&str; 8] =
+    ["tradeoff", "allan", "--records", "2", "--duration", "1000s", "--rate", "4"];
+
+#[test]
+fn estimators_are_compared() {
+    let folder = Folder::new();
+    let page = folder.put("tradeoff.md", "# Mine\n\nWords.\n");
+    let output = folder.path().to_str().unwrap();
+    let said = run(&[&SHORT[..], &["--json", "-o", output]].concat());
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    let value: Value = serde_json::from_str(&said.out).expect("one JSON object");
+    let estimators = value["estimators"].as_array().unwrap();
+    assert_eq!(estimators.len(), 11);
+    for (k, estimator) in estimators.iter().enumerate() {
+        let at = format!("/estimators/{k}");
+        for key in ["ns_per_value", "state_bytes", "accuracy/0/noise_density/rms"] {
+            assert!(number(&value, &format!("{at}/{key}")) > 0.0, "{estimator}");
+        }
+    }
+    // √(2·300 s/1000 s)
+    let limit = number(&value, "/noises/0/limit_of_random_walk");
+    assert!((limit - 0.6_f64.sqrt()).abs() < 1e-12, "{limit}");
+    let text = std::fs::read_to_string(&page).unwrap();
+    assert!(text.starts_with("# Mine\n\nWords.\n") && text.contains("| 4 windows | f64 | fit |"));
+    let picture = std::fs::read_to_string(folder.at("tradeoff-allan.svg")).unwrap();
+    assert!(picture.starts_with("<svg") && picture.contains("disjoint, f32, fit"));
+    // The same errors again, whatever the prices are.
+    let again = run(&[&SHORT[..], &["--json"]].concat());
+    let again: Value = serde_json::from_str(&again.out).expect("one JSON object");
+    for k in 0..11 {
+        let at = format!("/estimators/{k}/accuracy");
+        assert_eq!(value.pointer(&at), again.pointer(&at));
+    }
+}
+
+#[test]
+fn what_cannot_be_simulated_is_refused() {
+    for (arguments, words) in [
+        (&["--rate", "0.01"][..], "from 1000 to 100 million samples"),
+        (&["--rate", "-5"], "from 1000 to 100 million samples"),
+        (&["--rate", "inf"], "from 1000 to 100 million samples"),
+        (&["--duration", "4 parsecs"], "4 parsecs"),
+        (&["--records", "0"], "0"),
+    ] {
+        let said = run(&[&["tradeoff", "allan"], arguments].concat());
+        assert_eq!((said.code, said.out.as_str()), (2, ""), "{}", said.err);
+        assert!(said.err.contains(words) && said.err.lines().count() == 1, "{}", said.err);
+    }
+}
