@@ -8,6 +8,8 @@ use super::calibrate::write_into;
 use super::progress;
 use crate::calibrate::{Options, calibrate};
 use crate::error::Error;
+use crate::output::Output;
+use crate::report;
 use crate::report::demo::{Level, table};
 use crate::report::formats::Form;
 use crate::scene::{Preset, Simulator};
@@ -15,8 +17,9 @@ use crate::scene::{Preset, Simulator};
 /// Simulate three noise levels for four hours each, calibrate them, and compare with the truth.
 ///
 /// No file in between: 4 h at 200 Hz of each level go straight from the simulator into the
-/// calibration. Beside the estimates stands what two classic tools print for the same data. Each
-/// level's report.html, plots, imu.yaml and allan.csv go to imu-demo/.
+/// calibration. Beside the estimates stands what two classic tools print for the same data. A page
+/// with all of it, imu-demo/demo.html, and each level's report.html, plots, imu.yaml and allan.csv are
+/// written.
 #[derive(Args, Debug)]
 pub(super) struct Demo {
     /// Seed of the random numbers
@@ -41,9 +44,13 @@ impl Demo {
             write_into(&folder.join(preset.name()), &calibration, Form::Kalibr)?;
             levels.push(Level { name: preset.name(), scene, calibration });
         }
+        let mut page = Output::create(&folder.join("demo.html"))?;
+        page.write(report::html::demo(&levels).as_bytes())?;
+        page.finish()?;
         super::print(&table(&levels))?;
         super::print(
-            "\nreport.html, plots, imu.yaml and allan.csv of each level are in imu-demo/.\n",
+            "\nimu-demo/demo.html shows all of it; report.html, plots, imu.yaml and allan.csv of each level \
+             are beside it.\n",
         )
     }
 }

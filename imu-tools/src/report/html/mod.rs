@@ -13,7 +13,10 @@
 //! # Ok::<(), imu_tools::error::Error>(())
 //! ```
 
+mod demo;
 mod words;
+
+pub use demo::demo;
 
 use imu_core::allan::Parameter;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -33,6 +36,22 @@ const STYLE: &str = include_str!("../../../assets/report.css");
 pub fn page(calibration: &Calibration) -> String {
     let sensors: Vec<&SensorNoise> =
         [&calibration.gyroscope, &calibration.accelerometer].into_iter().flatten().collect();
+    let body = html! {
+        h1 { "IMU noise" }
+        p.lead { (words::recorded(calibration)) }
+        (verdict(&sensors))
+        (warnings(calibration))
+        @for sensor in &sensors { (numbers(sensor)) }
+        (pictures(calibration))
+        (filters(calibration, &sensors))
+        h2 { "What to record next time" }
+        ul { @for sentence in words::next_time(&sensors) { li { (sentence) } } }
+    };
+    document(&format!("IMU noise: {}", calibration.path), &body)
+}
+
+/// A page of its own.
+fn document(title: &str, body: &Markup) -> String {
     let font = format!(
         "@font-face {{ font-family: \"Imu Sans\"; src: url(data:font/ttf;base64,{}); }}",
         font_base64()
@@ -43,19 +62,11 @@ pub fn page(calibration: &Calibration) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "IMU noise: " (calibration.path) }
+                title { (title) }
                 style { (PreEscaped(font)) (PreEscaped(plot::STYLE)) (PreEscaped(STYLE)) }
             }
             body {
-                h1 { "IMU noise" }
-                p.lead { (words::recorded(calibration)) }
-                (verdict(&sensors))
-                (warnings(calibration))
-                @for sensor in &sensors { (numbers(sensor)) }
-                (pictures(calibration))
-                (filters(calibration, &sensors))
-                h2 { "What to record next time" }
-                ul { @for sentence in words::next_time(&sensors) { li { (sentence) } } }
+                (body)
                 footer {
                     p {
                         "Intervals are of 90 % confidence. N and K are continuous-time densities. \
