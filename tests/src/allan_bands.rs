@@ -11,8 +11,8 @@
 //! is what closed forms in τ are compared with.
 
 use imu_core::noise::{
-    Axis, BandVibration, Channel, Flicker, GaussMarkov, IncrementQuantisation, Normal,
-    Quantisation, Sensor, Stage, Start, Term, White,
+    Axis, BandVibration, Channel, Flicker, GaussMarkov, IncrementQuantisation, IntervalMean,
+    Normal, Quantisation, Sensor, Stage, Start, Term, White,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -118,6 +118,33 @@ pub fn cases<T: Normal>() -> Vec<Case> {
             }),
             record: record(band),
         },
+        Case {
+            name: "Gauss-Markov, interval means",
+            // The double integral of σ²e^(−|t|/T) over two intervals.
+            autocovariance: correlated(&|k| {
+                let x = DT / time;
+                let same = 2.0 * (x + (-x).exp_m1());
+                let other = -(-x).exp_m1() * x.exp_m1() * (-k * x).exp();
+                sigma * sigma / (x * x) * if k == 0.0 { same } else { other }
+            }),
+            record: record(IntervalMean(gauss_markov)),
+        },
+        Case {
+            name: "band vibration, interval means",
+            // Differences of x, whose autocovariance is that of the resonator's displacement.
+            autocovariance: correlated(&|k| {
+                let displacement = |k: f64| {
+                    let decay = PI * bandwidth * k.abs() * DT;
+                    let damping = 0.5 * bandwidth / frequency;
+                    let root = (1.0 - damping * damping).sqrt();
+                    let angle = root * TAU * frequency * k.abs() * DT;
+                    (-decay).exp() * (angle.cos() + damping / root * angle.sin())
+                };
+                let moved = 2.0 * displacement(k) - displacement(k - 1.0) - displacement(k + 1.0);
+                rms * rms * moved / (TAU * frequency * DT).powi(2)
+            }),
+            record: record(IntervalMean(band)),
+        },
     ]
 }
 
@@ -134,7 +161,8 @@ pub fn flicker_members() -> [(f64, f64); 5] {
     })
 }
 
-fn record<T: Normal, P: Term<T> + Copy + 'static>(term: P) -> Box<dyn Fn(u64) -> Vec<f64>> {
+/// The records of a term, by their seeds.
+pub fn record<T: Normal, P: Term<T> + Copy + 'static>(term: P) -> Box<dyn Fn(u64) -> Vec<f64>> {
     Box::new(move |seed| {
         let channel = Channel::new(seed, Sensor::GYROSCOPE, Axis::X);
         let mut stage = term.prepare(T::from_f64(DT), channel).expect("valid parameters");

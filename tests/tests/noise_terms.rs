@@ -4,16 +4,17 @@
 //! Twenty records of each are averaged. The estimate is a quadratic form of a normal vector with
 //! 20·edf degrees of freedom, so by Laurent & Massart (2000), lemma 1, it is off by more than
 //! −2√(x/20 edf) or +2√(x/20 edf) + 2x·spread/(20 M), relative, with a chance below e^(−x) each.
-//! x = ln(2 · 2 · 6 · 14 / 10⁻⁶) = 19.6 makes it one in a million over all checks here. Uniform
+//! x = ln(2 · 2 · 8 · 14 / 10⁻⁶) = 19.9 makes it one in a million over all checks here. Uniform
 //! numbers (quantisation of increments) scatter less than normal ones: theirs is the same bound.
 //! How many single records lie in the 99.9 % band: `cargo run --release -p imu-tests --example terms`.
 
 use imu_core::noise::{
-    Axis, Channel, GaussMarkov, Normal, RateRamp, Sensor, Sinusoid, Stage, Start, Term, WarmUp,
+    Axis, Channel, GaussMarkov, IntervalMean, Normal, RandomWalk, RateRamp, Sensor, Sinusoid,
+    Stage, Start, Term, WarmUp,
 };
 use imu_tests::allan_bands::{
     BAND, Band, DT, FLICKER, GAUSS_MARKOV, INCREMENT, OCTAVES, READING, SAMPLES, SEEDS, allan,
-    bands, cases,
+    bands, cases, record,
 };
 use std::f64::consts::{LN_2, PI};
 
@@ -45,6 +46,48 @@ fn every_term_in_double_precision() {
 #[test]
 fn every_term_in_single_precision() {
     every_term::<f32>(200);
+}
+
+/// Interval means of a random walk have K²τ/3 at every octave, from one sample on, where instants have
+/// half as much again. Differences over disjoint pairs of blocks are independent: M degrees of freedom
+/// each, twenty records, bound by the same lemma at 10⁻⁶ over both scalars.
+fn a_walk_of_means<T: Normal>(first_seed: u64) {
+    let walk = record(IntervalMean(RandomWalk { random_walk: T::from_f64(0.25) }));
+    let x = (2.0 * 2.0 * OCTAVES as f64 / 1e-6).ln();
+    let mut mean = vec![0.0; OCTAVES];
+    for seed in first_seed..first_seed + SEEDS {
+        let variances = allan(&walk(seed));
+        mean.iter_mut().zip(variances).for_each(|(mean, v)| *mean += v / SEEDS as f64);
+    }
+    for (octave, found) in mean.into_iter().enumerate() {
+        let pairs = SEEDS as f64 * (SAMPLES >> (octave + 1)) as f64;
+        let expected = 0.25_f64.powi(2) * f64::from(1 << octave) * DT / 3.0;
+        let (below, off) = (2.0 * (x / pairs).sqrt(), found / expected - 1.0);
+        assert!(-below < off && off < below + 2.0 * x / pairs, "octave {octave}: {off}");
+    }
+}
+
+#[test]
+fn interval_means_of_a_random_walk() {
+    a_walk_of_means::<f64>(300);
+    a_walk_of_means::<f32>(400);
+}
+
+/// Means of a continuous process have its closed form exactly, at one sample too.
+#[test]
+fn interval_means_of_gauss_markov_have_the_continuous_form() {
+    let (sigma, time) = GAUSS_MARKOV;
+    for Band { block, variance, .. } in expected("Gauss-Markov, interval means") {
+        let x = block as f64 * DT / time;
+        // From the exponential series where the bracket would cancel.
+        let bracket = if x < 0.02 {
+            x / 3.0 - x * x / 4.0 + 7.0 / 60.0 * x * x * x
+        } else {
+            1.0 - (3.0 - 4.0 * (-x).exp() + (-2.0 * x).exp()) / (2.0 * x)
+        };
+        let continuous = 2.0 * sigma * sigma / x * bracket;
+        assert!((variance / continuous - 1.0).abs() < 1e-5, "{block}");
+    }
 }
 
 fn expected(name: &str) -> Vec<Band> {

@@ -86,16 +86,27 @@ pub struct BandVibrationStage<T: Normal> {
     rng: T::Generator,
 }
 
-impl<T: Normal> Stage<T> for BandVibrationStage<T> {
+impl<T: Normal> BandVibrationStage<T> {
+    /// Goes on to the next sample; how far x moved.
     #[inline(always)]
-    fn step(&mut self, truth: T) -> T {
+    pub(super) fn advance(&mut self) -> T {
         let (x, u) = (self.x, self.u);
         let [xx, xu, ux, uu] = self.transition;
         let [drive_x, shared, drive_u] = self.drive;
         let n = T::standard_normal(&mut self.rng);
         let common = T::standard_normal(&mut self.rng);
-        self.x += (xx * x + xu * u) + (drive_x * n + shared * common);
+        let moved = (xx * x + xu * u) + (drive_x * n + shared * common);
+        self.x += moved;
         self.u += (ux * x + uu * u) + drive_u * common;
+        moved
+    }
+}
+
+impl<T: Normal> Stage<T> for BandVibrationStage<T> {
+    #[inline(always)]
+    fn step(&mut self, truth: T) -> T {
+        let u = self.u;
+        self.advance();
         truth + u
     }
 

@@ -20,6 +20,7 @@
 //! | [`ConstantBias`], [`TurnOnBias`]: known, and drawn once a run | 0 |
 //! | [`TemperatureRamp`], [`WarmUp`]: a bias that follows the temperature | that of a ramp |
 //! | [`Sinusoid`], [`BandVibration`]: vibration of one frequency, or of a band | peaks at 0.37/f |
+//! | [`IntervalMean`] of any that is not constant: what an averaging sensor reads | at τ ≫ dt the same |
 //!
 //! ```
 //! use imu_core::noise::{RandomWalk, Sensor, Stage, ThreeAxis, White};
@@ -44,6 +45,7 @@ mod counter;
 mod flicker;
 mod gauss_markov;
 mod increment_quantisation;
+mod interval_mean;
 mod normal;
 mod nth;
 mod quantisation;
@@ -64,6 +66,7 @@ pub use constant_bias::ConstantBias;
 pub use flicker::{Flicker, FlickerStage};
 pub use gauss_markov::{GaussMarkov, GaussMarkovStage, Start};
 pub use increment_quantisation::{IncrementQuantisation, IncrementQuantisationStage};
+pub use interval_mean::{BandVibrationMean, GaussMarkovMean, IntervalMean, RandomWalkMean};
 pub use normal::Normal;
 pub use nth::Nth;
 pub use quantisation::{Quantisation, QuantisationStage};

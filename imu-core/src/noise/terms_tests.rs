@@ -107,7 +107,7 @@ fn stages_are_as_large_as_they_say() {
     fn size<T: Normal, P: Term<T>>() -> usize {
         size_of::<P::Stage>()
     }
-    fn sizes<T: Normal>() -> [usize; 10] {
+    fn sizes<T: Normal>() -> [usize; 13] {
         [
             size::<T, GaussMarkov<T>>(),
             size::<T, Flicker<T, 5>>(),
@@ -119,10 +119,13 @@ fn stages_are_as_large_as_they_say() {
             size::<T, BandVibration<T>>(),
             size::<T, TemperatureRamp<T>>(),
             size::<T, WarmUp<T>>(),
+            size::<T, IntervalMean<RandomWalk<T>>>(),
+            size::<T, IntervalMean<GaussMarkov<T>>>(),
+            size::<T, IntervalMean<BandVibration<T>>>(),
         ]
     }
-    assert_eq!(sizes::<f32>(), [28, 16 + 12 * 5, 8, 24, 16, 4, 24, 52, 20, 16]);
-    assert_eq!(sizes::<f64>(), [56, 32 + 24 * 5, 16, 48, 24, 8, 24, 104, 32, 32]);
+    assert_eq!(sizes::<f32>(), [28, 16 + 12 * 5, 8, 24, 16, 4, 24, 52, 20, 16, 28, 40, 56]);
+    assert_eq!(sizes::<f64>(), [56, 32 + 24 * 5, 16, 48, 24, 8, 24, 104, 32, 32, 56, 80, 112]);
 }
 
 /// Every term at zero but the rounding, in one tuple.
@@ -191,6 +194,13 @@ fn blocks_equal_steps_and_bias_is_what_comes_next() {
         check("band", band(t(0.1), t(3.0), t(1.0)).prepare(dt, on), false);
         check("temperature", ramp(t(0.1), t(3.0), t(1.0)).prepare(dt, on), true);
         check("warm-up", warm_up(t(0.1), t(3.0), t(1.0), t(1.0)).prepare(dt, on), true);
+        let mean = IntervalMean(RandomWalk { random_walk: t(0.1) });
+        check("mean of a walk", mean.prepare(dt, on), true);
+        check("mean of markov", IntervalMean(markov(t(0.1), t(1.0))).prepare(dt, on), true);
+        let mean = IntervalMean(RateRamp { rate_ramp: t(0.1) });
+        check("mean of a ramp", mean.prepare(dt, on), true);
+        let mean = IntervalMean(band(t(0.1), t(3.0), t(1.0)));
+        check("mean of a band", mean.prepare(dt, on), false);
     }
     all::<f32>();
     all::<f64>();

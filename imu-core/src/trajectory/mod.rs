@@ -18,6 +18,7 @@ pub use ellipse::Ellipse;
 pub use rest::Rest;
 
 use crate::Real;
+use crate::sensor::Kinematics;
 use nalgebra::{Quaternion, Vector3};
 
 /// Gravity of the classic simulators, m/s²; what the trajectories here take if not told otherwise.
@@ -60,4 +61,8 @@ pub trait Trajectory<T: Real> {
     /// Computed in double precision from the integer time and rounded once to `T`: so an `f32`
     /// trajectory is as true after four hours as in its first second.
     fn at(&self, t_ns: i64) -> Motion<T>;
+
+    /// What an ideal sensor at the body's origin feels `offset_s` seconds after that instant: at
+    /// the instants between nanoseconds too, which a mean over an interval is made of.
+    fn kinematics(&self, t_ns: i64, offset_s: f64) -> Kinematics<T>;
 }

@@ -2,6 +2,7 @@
 
 use super::{GRAVITY, Motion, Trajectory};
 use crate::Real;
+use crate::sensor::Kinematics;
 use nalgebra::{Quaternion, Vector3};
 
 /// A body at rest, level, at the world's origin.
@@ -34,6 +35,13 @@ impl<T: Real> Trajectory<T> for Rest {
             attitude_wb: Quaternion::new(T::ONE, T::ZERO, T::ZERO, T::ZERO),
             angular_rate: zero,
             specific_force: Vector3::new(T::ZERO, T::ZERO, T::from_f64(self.gravity)),
+        }
+    }
+
+    fn kinematics(&self, _: i64, _: f64) -> Kinematics<T> {
+        Kinematics {
+            specific_force: [T::ZERO, T::ZERO, T::from_f64(self.gravity)],
+            ..Kinematics::default()
         }
     }
 }

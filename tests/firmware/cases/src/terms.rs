@@ -5,8 +5,9 @@ use crate::Report;
 use crate::noise::{channel, composition, stage};
 use core::hint::black_box;
 use imu_core::noise::{
-    BandVibration, Flicker, GaussMarkov, IncrementQuantisation, Normal, Nth, Quantisation,
-    RandomWalk, RateRamp, Sinusoid, Start, TemperatureRamp, Term, TurnOnBias, WarmUp, White,
+    BandVibration, Flicker, GaussMarkov, IncrementQuantisation, IntervalMean, Normal, Nth,
+    Quantisation, RandomWalk, RateRamp, Sinusoid, Start, TemperatureRamp, Term, TurnOnBias, WarmUp,
+    White,
 };
 
 /// The parameters of a case, hidden from the optimiser.
@@ -60,6 +61,7 @@ pub fn case<T: Normal>(report: &mut dyn Report) {
     stage(report, temperature::<T>().prepare(dt, on), truth);
     stage(report, warm_up::<T>().prepare(dt, on), truth);
     stage(report, all::<T>().prepare(dt, on), truth);
+    means::<T>(report, dt, truth);
     for bad in [0.0, -1.0, 1e9, f64::NAN, f64::INFINITY] {
         let bad = real::<T>(bad);
         let flags = [
@@ -75,9 +77,36 @@ pub fn case<T: Normal>(report: &mut dyn Report) {
             BandVibration { bandwidth: bad, ..band() }.prepare(dt, on).is_ok(),
             TemperatureRamp { rate: bad, ..temperature() }.prepare(dt, on).is_ok(),
             WarmUp { time_constant: bad, ..warm_up() }.prepare(dt, on).is_ok(),
+            IntervalMean(RandomWalk { random_walk: bad }).prepare(dt, on).is_ok(),
+            IntervalMean(GaussMarkov { correlation_time: bad, ..markov(Start::Zero) })
+                .prepare(dt, on)
+                .is_ok(),
+            IntervalMean(BandVibration { frequency: bad, ..band() }).prepare(dt, on).is_ok(),
+            IntervalMean(RateRamp { rate_ramp: bad }).prepare(dt, on).is_ok(),
+            IntervalMean(TemperatureRamp { rate: bad, ..temperature() }).prepare(dt, on).is_ok(),
+            IntervalMean(WarmUp { time_constant: bad, ..warm_up() }).prepare(dt, on).is_ok(),
+            IntervalMean(Sinusoid { frequency: bad, ..sinusoid() }).prepare(dt, on).is_ok(),
         ];
         flags.into_iter().for_each(|flag| report.flag(flag));
     }
+}
+
+fn walk<T: Normal>() -> RandomWalk<T> {
+    RandomWalk { random_walk: real(5e-4) }
+}
+
+/// The means over the interval.
+fn means<T: Normal>(report: &mut dyn Report, dt: T, truth: T) {
+    let on = channel();
+    stage(report, IntervalMean(walk::<T>()).prepare(dt, on), truth);
+    stage(report, IntervalMean(markov::<T>(Start::Stationary)).prepare(dt, on), truth);
+    let short = GaussMarkov { correlation_time: real::<T>(0.004), ..markov(Start::Zero) };
+    stage(report, IntervalMean(short).prepare(dt, on), truth);
+    stage(report, IntervalMean(band::<T>()).prepare(dt, on), truth);
+    stage(report, IntervalMean(RateRamp { rate_ramp: real::<T>(1e-3) }).prepare(dt, on), truth);
+    stage(report, IntervalMean(temperature::<T>()).prepare(dt, on), truth);
+    stage(report, IntervalMean(warm_up::<T>()).prepare(dt, on), truth);
+    stage(report, IntervalMean(sinusoid::<T>()).prepare(dt, on), truth);
 }
 
 fn white<T: Normal>() -> White<T> {
@@ -87,7 +116,7 @@ fn white<T: Normal>() -> White<T> {
 fn all<T: Normal>() -> impl Term<T> {
     (
         white(),
-        RandomWalk { random_walk: real(5e-4) },
+        walk(),
         markov(Start::Stationary),
         flicker(),
         increments(),
@@ -114,6 +143,10 @@ pub fn cost<T: Normal>(report: &mut dyn Report) {
     composition(report, "band vibration", band::<T>(), dt);
     composition(report, "temperature ramp", temperature::<T>(), dt);
     composition(report, "warm-up", warm_up::<T>(), dt);
+    composition(report, "random walk mean", IntervalMean(walk::<T>()), dt);
+    let mean = IntervalMean(markov::<T>(Start::Stationary));
+    composition(report, "Gauss-Markov mean", mean, dt);
+    composition(report, "band vibration mean", IntervalMean(band::<T>()), dt);
     composition(report, "all twelve", all::<T>(), dt);
     let none = ((), (), (), (), (), (), (), (), (), (), (), ());
     composition(report, "twelve left out", none, dt);

@@ -3,6 +3,7 @@
 use crate::{Report, repeat};
 use core::hint::black_box;
 use imu_core::Real;
+use imu_core::sensor::Kinematics;
 use imu_core::trajectory::{Ellipse, Motion, Rest, Trajectory};
 
 /// Motions at spread instants, negative and far ones included.
@@ -11,6 +12,10 @@ pub fn case<T: Real>(report: &mut dyn Report) {
     for t_ns in [i64::MIN, -1, 0, 1, 5_000_000, 1_000_000_007, 86_400_000_000_000, i64::MAX] {
         motion::<T>(report, ellipse.at(black_box(t_ns)));
         motion::<T>(report, rest.at(black_box(t_ns)));
+        for offset_s in [0.0, -1e-3, 2.5e-10, f64::INFINITY] {
+            kinematics::<T>(report, ellipse.kinematics(black_box(t_ns), black_box(offset_s)));
+            kinematics::<T>(report, rest.kinematics(black_box(t_ns), black_box(offset_s)));
+        }
     }
     for k in 0..64 {
         motion::<T>(report, ellipse.at(k * 312_345_678));
@@ -18,6 +23,11 @@ pub fn case<T: Real>(report: &mut dyn Report) {
     report.instructions("ellipse", 16, &mut || {
         repeat(16, || -> Motion<T> { ellipse.at(black_box(7_000_000_000)) });
     });
+}
+
+fn kinematics<T: Real>(report: &mut dyn Report, felt: Kinematics<T>) {
+    let vectors = [felt.angular_rate, felt.angular_acceleration, felt.specific_force];
+    vectors.as_flattened().iter().for_each(|&x| report.real(x));
 }
 
 fn motion<T: Real>(report: &mut dyn Report, motion: Motion<T>) {
