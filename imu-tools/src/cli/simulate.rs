@@ -6,9 +6,10 @@ use clap::Args;
 
 use super::{progress, same_target};
 use crate::error::Error;
-use crate::recording::{Block, Format, Sink};
+use crate::recording::{self, Block, Contents, Format, SampleKind, Sink};
 use crate::scene::{
-    Path as Motion, Preset, Rate, Scene, Simulator, TruthWriter, display_duration, parse_duration,
+    Path as Motion, Preset, Rate, Scene, Simulator, TermsWriter, TruthWriter, display_duration,
+    parse_duration,
 };
 
 const EXAMPLES: &str = "\
@@ -19,8 +20,10 @@ Examples:
       a minute on the classic ellipse, and what was true at each sample
   imu simulate high --lowpass 42 --duration 10min -o - | imu calibrate -
       into a pipe, as CSV
+  imu simulate scene.toml -o imu.csv --samples increments --truth-terms terms.csv
+      increments of angle and velocity, and what each error adds to them
   imu simulate scene.toml -o imu.bag
-      your own terms, for each sensor and axis:
+      your own errors, for each sensor and axis, of the clock and the link (docs/scenes.md):
           rate_hz = 400
           duration = \"1h\"
           [gyroscope]                       # rad/s
@@ -64,39 +67,77 @@ pub(super) struct Simulate {
     /// Limit the bandwidth of both sensors by a one-pole low-pass at this frequency
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     lowpass: Option<f64>,
+    /// Samples at an instant, means over the interval before, or increments over it: instantaneous,
+    /// mean or increments [default: the scene's, instantaneous]
+    #[arg(long, value_name = "KIND")]
+    samples: Option<SampleKind>,
     /// Write pose, velocity, true rate and force, and the bias carried, as CSV
     #[arg(long, value_name = "FILE")]
     truth: Option<PathBuf>,
+    /// Write what each error adds to each sample and axis, as CSV
+    #[arg(long, value_name = "FILE")]
+    truth_terms: Option<PathBuf>,
+}
+
+/// Everything that is written.
+struct Targets {
+    sink: Box<dyn Sink>,
+    truth: Option<TruthWriter>,
+    terms: Option<TermsWriter>,
 }
 
 impl Simulate {
     pub(super) fn run(self) -> Result<(), Error> {
         let scene = self.scene()?;
-        if self.truth.as_deref().is_some_and(|truth| same_target(truth, &self.output)) {
-            return Err(Error::usage(format!(
-                "the recording and the truth cannot both go to {}: name two files",
-                self.output.display()
-            )));
-        }
-        let is_file = Preset::from_name(&self.scene).is_none();
-        let is_scene = |path: &Path| is_file && same_target(path, Path::new(&self.scene));
-        let targets = [Some(self.output.as_path()), self.truth.as_deref()];
-        if let Some(target) = targets.into_iter().flatten().find(|path| is_scene(path)) {
-            return Err(Error::usage(format!(
-                "{} is the scene itself: name another file to write",
-                target.display()
-            )));
-        }
+        self.check_targets()?;
         let mut simulator = Simulator::new(&scene)?;
         let samples = simulator.samples_left();
-        let mut sink = super::create(&self.output, self.format)?;
-        let mut truth = self.truth.as_deref().map(TruthWriter::create).transpose()?;
-        write(&mut simulator, sink.as_mut(), truth.as_mut())?;
-        sink.finish()?;
-        if let Some(truth) = truth {
-            truth.finish()?;
+        let format = self.format.map_or_else(|| Format::of(&self.output), Ok)?;
+        let contents =
+            Contents { samples: scene.samples, temperature: scene.temperature.is_some() };
+        let mut targets = Targets {
+            sink: recording::create_with(&self.output, format, contents)?,
+            truth: self.truth.as_ref().map(|path| TruthWriter::create(path, &scene)).transpose()?,
+            terms: self
+                .truth_terms
+                .as_ref()
+                .map(|path| TermsWriter::create(path, &scene))
+                .transpose()?,
+        };
+        let lost = targets.write(&mut simulator)?;
+        targets.finish()?;
+        super::say(&format!("imu: wrote {}", self.summary(&scene, samples, lost)));
+        if let Some(unsaid) = unsaid(format, contents) {
+            super::say(&format!("imu: {}: {unsaid}", super::target_name(&self.output)));
         }
-        super::say(&format!("imu: wrote {}", self.summary(&scene, samples)));
+        Ok(())
+    }
+
+    /// That no file is to be written twice, nor over the scene.
+    fn check_targets(&self) -> Result<(), Error> {
+        let targets = [
+            (Some(&self.output), "recording"),
+            (self.truth.as_ref(), "truth"),
+            (self.truth_terms.as_ref(), "terms"),
+        ];
+        let targets: Vec<(&PathBuf, &str)> =
+            targets.into_iter().filter_map(|(path, what)| Some((path?, what))).collect();
+        for (i, (path, what)) in targets.iter().enumerate() {
+            let same = |(other, _): &&(&PathBuf, &str)| same_target(path, other);
+            if let Some((_, before)) = targets[..i].iter().find(same) {
+                return Err(Error::usage(format!(
+                    "the {before} and the {what} cannot both go to {}: name two files",
+                    path.display()
+                )));
+            }
+            let is_file = Preset::from_name(&self.scene).is_none();
+            if is_file && same_target(path, Path::new(&self.scene)) {
+                return Err(Error::usage(format!(
+                    "{} is the scene itself: name another file to write",
+                    path.display()
+                )));
+            }
+        }
         Ok(())
     }
 
@@ -118,6 +159,9 @@ impl Simulate {
         if let Some(seed) = self.seed {
             scene.seed = seed;
         }
+        if let Some(samples) = self.samples {
+            scene.samples = samples;
+        }
         if let Some(hz) = self.lowpass {
             scene.gyroscope.lowpass_hz = Some(hz);
             scene.accelerometer.lowpass_hz = Some(hz);
@@ -125,14 +169,22 @@ impl Simulate {
         Ok(scene)
     }
 
-    fn summary(&self, scene: &Scene, samples: u64) -> String {
+    fn summary(&self, scene: &Scene, due: u64, lost: u64) -> String {
         let to = super::target_name(&self.output);
-        let truth = match &self.truth {
-            Some(path) => format!(", and the truth to {}", path.display()),
-            None => String::new(),
+        let beside = [(&self.truth, "truth"), (&self.truth_terms, "terms")];
+        let beside: String = beside
+            .into_iter()
+            .filter_map(|(path, what)| {
+                Some(format!(", and the {what} to {}", path.as_ref()?.display()))
+            })
+            .collect();
+        let without = match lost {
+            0 => String::new(),
+            lost => format!(", {lost} more were lost"),
         };
+        let samples = due - lost;
         format!(
-            "{samples} {} of both sensors ({} at {} Hz, seed {}) to {to}{truth}",
+            "{samples} {} of both sensors ({} at {} Hz, seed {}{without}) to {to}{beside}",
             if samples == 1 { "sample" } else { "samples" },
             display_duration(scene.duration_ns),
             scene.rate.hz(),
@@ -141,22 +193,59 @@ impl Simulate {
     }
 }
 
-fn write(
-    simulator: &mut Simulator,
-    sink: &mut dyn Sink,
-    mut truth: Option<&mut TruthWriter>,
-) -> Result<(), Error> {
-    let bar = progress::bar(simulator.samples_left(), "simulating");
-    let mut block = Block::default();
-    loop {
-        if let Some(writer) = &mut truth {
-            let Some(truth) = simulator.advance_with_truth(&mut block) else { return Ok(()) };
-            writer.write(truth)?;
-        } else if !simulator.advance(&mut block) {
-            return Ok(());
+/// What a recording of this format cannot say of its contents.
+fn unsaid(format: Format, contents: Contents) -> Option<String> {
+    let Contents { samples, temperature } = contents;
+    let kind = match (format, samples) {
+        (_, SampleKind::Instantaneous) | (Format::Csv | Format::Euroc, _) => None,
+        (Format::Bag | Format::Mcap, _) => Some(format!(
+            "this format has no place for the kind of its samples; they are {}",
+            samples.meaning()
+        )),
+    };
+    let temperature = (temperature && format != Format::Csv)
+        .then(|| "the temperature is not in it; a .csv has a column for it".to_owned());
+    let all: Vec<String> = kind.into_iter().chain(temperature).collect();
+    (!all.is_empty()).then(|| all.join("; "))
+}
+
+impl Targets {
+    /// Plays the scene to its end; how many of its samples were lost.
+    fn write(&mut self, simulator: &mut Simulator) -> Result<u64, Error> {
+        let due = simulator.samples_left();
+        let bar = progress::bar(due, "simulating");
+        if self.terms.is_some() {
+            simulator.keep_terms();
         }
-        sink.write_block(&block)?;
-        bar.inc(block.gyroscope.len() as u64);
+        let (mut block, mut written) = (Block::default(), 0);
+        loop {
+            if self.truth.is_some() || self.terms.is_some() {
+                let Some(truth) = simulator.advance_with_truth(&mut block) else { break };
+                if let Some(writer) = &mut self.truth {
+                    writer.write(truth)?;
+                }
+                if let Some(writer) = &mut self.terms {
+                    writer.write(truth)?;
+                }
+            } else if !simulator.advance(&mut block) {
+                break;
+            }
+            self.sink.write_block(&block)?;
+            written += block.gyroscope.len() as u64;
+            bar.set_position(due - simulator.samples_left());
+        }
+        Ok(due - written)
+    }
+
+    fn finish(self) -> Result<(), Error> {
+        self.sink.finish()?;
+        if let Some(truth) = self.truth {
+            truth.finish()?;
+        }
+        if let Some(terms) = self.terms {
+            terms.finish()?;
+        }
+        Ok(())
     }
 }
 

@@ -30,6 +30,7 @@
 mod ahead;
 mod align;
 pub mod bag;
+mod contents;
 mod convert;
 pub mod csv;
 pub mod euroc;
@@ -58,6 +59,7 @@ use std::io::Read;
 use std::path::Path;
 
 pub(crate) use ahead::read_ahead;
+pub use contents::{Contents, SampleKind};
 pub use convert::{Converted, convert};
 pub use format::Format;
 pub use joined::Joined;
@@ -342,11 +344,24 @@ pub fn create(path: &Path) -> Result<Box<dyn Sink>, Error> {
 /// # Errors
 /// When the folder cannot be written.
 pub fn create_as(path: &Path, format: Format) -> Result<Box<dyn Sink>, Error> {
+    create_with(path, format, Contents::default())
+}
+
+/// The same, of a recording that holds `contents`: a CSV and EuRoC's folders say which samples they are,
+/// and a CSV has a column for the temperature. Bags and MCAP files have no place for either.
+///
+/// # Errors
+/// When the folder cannot be written.
+pub fn create_with(
+    path: &Path,
+    format: Format,
+    contents: Contents,
+) -> Result<Box<dyn Sink>, Error> {
     Ok(match format {
         Format::Bag => Box::new(bag::BagWriter::create(path)?),
         Format::Mcap => Box::new(mcap::McapWriter::create(path)?),
-        Format::Csv => Box::new(csv::CsvWriter::create(path)?),
-        Format::Euroc => Box::new(euroc::EurocWriter::create(path)?),
+        Format::Csv => Box::new(csv::CsvWriter::create_with(path, contents)?),
+        Format::Euroc => Box::new(euroc::EurocWriter::create_with(path, contents.samples)?),
     })
 }
 

@@ -1,43 +1,20 @@
 //! Scene files: TOML, every key optional, an unknown one an error that names it.
 //!
-//! ```toml
-//! rate_hz = 200                    # of both sensors
-//! duration = "4h"                  # or a number of seconds
-//! seed = 7
-//! start_ns = 1600000000000000000   # stamp of the first sample
-//! motion = "ellipse"               # or "rest"
-//! gravity = 9.81                   # m/s²
+//! What each key means, its unit and its default: `docs/scenes.md`. The keys of a sensor are the fields
+//! of [`SensorErrors`], those of `[clock]` and `[temperature]` the fields of [`ClockErrors`] and
+//! [`Temperature`].
 //!
-//! [gyroscope]                      # rad/s
-//! noise_density = 0.015            # N, for all axes
-//! random_walk = [5e-5, 5e-5, 0]    # K, for x, y, z; 0 leaves the term out
-//! constant_bias = 0.01
-//! turn_on_bias = 1e-3              # standard deviation of an offset drawn once
-//! rate_ramp = 1e-9                 # R: growth of the bias a second
-//! lowpass_hz = 42                  # one-pole bandwidth; left out: none
-//! saturation = 35                  # full scale
-//! quantisation = 1.3e-4            # one count
-//!
-//! [gyroscope.flicker]              # bias instability B, flat between two averaging times
-//! bias_instability = 1e-4
-//! shortest_tau_s = 1
-//! longest_tau_s = 1000
-//!
-//! [gyroscope.gauss_markov]
-//! standard_deviation = 1e-4
-//! correlation_time_s = 300
-//!
-//! [gyroscope.vibration]            # one frequency
-//! amplitude = [0.01, 0, 0]
-//! frequency_hz = 47
-//!
-//! [gyroscope.band_vibration]       # a band about a frequency
-//! standard_deviation = 0.01
-//! frequency_hz = 30
-//! bandwidth_hz = 10
-//!
-//! [accelerometer]                  # m/s²
-//! noise_density = 0.019
+//! ```
+//! use imu_tools::scene::{Path, Scene};
+//! let scene = Scene::from_toml(
+//!     "motion = 'ellipse'
+//!      [gyroscope]
+//!      noise_density = 0.015           # N, for all axes
+//!      random_walk = [5e-5, 5e-5, 0]   # K, for x, y, z; 0 leaves the term out",
+//!     "scene.toml",
+//! )?;
+//! assert_eq!(scene.motion, Path::Ellipse);
+//! # Ok::<(), imu_tools::error::Error>(())
 //! ```
 
 use std::fmt;
@@ -45,9 +22,11 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, Visitor};
 
-use super::errors::SensorTable;
-use super::{Path, Rate, Scene, parse_duration};
+use super::check::{self, Bad};
+use super::located::{impossible, refused};
+use super::{ClockErrors, Path, Rate, Scene, SensorErrors, Temperature, parse_duration};
 use crate::error::Error;
+use crate::recording::SampleKind;
 
 /// A file's keys as they stand in it.
 #[derive(Deserialize)]
@@ -57,19 +36,16 @@ struct File {
     duration: Option<Length>,
     seed: Option<u64>,
     start_ns: Option<i64>,
-    motion: Option<Motion>,
+    motion: Option<Path>,
     gravity: Option<f64>,
+    samples: Option<SampleKind>,
+    temperature: Option<Temperature>,
     #[serde(default)]
-    gyroscope: SensorTable,
+    clock: ClockErrors,
     #[serde(default)]
-    accelerometer: SensorTable,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum Motion {
-    Rest,
-    Ellipse,
+    gyroscope: SensorErrors,
+    #[serde(default)]
+    accelerometer: SensorErrors,
 }
 
 /// A duration in nanoseconds, from `"4h"` or a number of seconds.
@@ -111,29 +87,24 @@ impl Scene {
     /// One sentence naming `name` (the file), the line and the key: for bad TOML, an unknown key, or
     /// a value that cannot be.
     pub fn from_toml(text: &str, name: &str) -> Result<Self, Error> {
-        let file: File = toml::from_str(text).map_err(|error| {
-            let line = error.span().map_or(1, |span| {
-                1 + text.bytes().take(span.start).filter(|&byte| byte == b'\n').count()
-            });
-            let message = error.message().lines().collect::<Vec<_>>().join(" ");
-            Error::data(format!("scene {name}, line {line}: {message}"))
-        })?;
+        let file: File = toml::from_str(text).map_err(|error| refused(text, name, &error))?;
         let base = Self::default();
-        let named = |error: Error| Error::data(format!("scene {name}: {error}"));
+        let rate = file.rate_hz.map_or(Ok(base.rate), Rate::from_hz);
         let scene = Self {
-            motion: match file.motion {
-                None | Some(Motion::Rest) => Path::Rest,
-                Some(Motion::Ellipse) => Path::Ellipse,
-            },
+            motion: file.motion.unwrap_or(base.motion),
             gravity: file.gravity.unwrap_or(base.gravity),
-            rate: file.rate_hz.map_or(Ok(base.rate), Rate::from_hz).map_err(named)?,
+            rate: rate
+                .map_err(|error| impossible(text, name, Bad::new("rate_hz", error.to_string())))?,
             duration_ns: file.duration.map_or(base.duration_ns, |Length(ns)| ns),
             seed: file.seed.unwrap_or(base.seed),
             start_ns: file.start_ns.unwrap_or(base.start_ns),
-            gyroscope: file.gyroscope.errors(),
-            accelerometer: file.accelerometer.errors(),
+            samples: file.samples.unwrap_or(base.samples),
+            temperature: file.temperature,
+            clock: file.clock,
+            gyroscope: file.gyroscope,
+            accelerometer: file.accelerometer,
         };
-        scene.check().map_err(named)?;
+        check::check(&scene).map_err(|bad| impossible(text, name, bad))?;
         Ok(scene)
     }
 
@@ -142,31 +113,7 @@ impl Scene {
     /// # Errors
     /// One sentence naming the first that cannot.
     pub fn check(&self) -> Result<(), Error> {
-        if !(self.gravity.is_finite() && self.gravity.abs() <= 1e3) {
-            return Err(Error::usage(format!(
-                "gravity = {} cannot be: give m/s², such as 9.81",
-                self.gravity
-            )));
-        }
-        if self.start_ns < 0 {
-            return Err(Error::usage(format!(
-                "start_ns = {} is before 1970: stamps count nanoseconds from there",
-                self.start_ns
-            )));
-        }
-        let last = u64::try_from(i64::MAX - self.start_ns).unwrap_or(0);
-        if self.duration_ns >= last {
-            return Err(Error::usage(
-                "the last stamp is beyond the year 2262, where 64-bit nanoseconds end: start \
-                 earlier or make the duration shorter",
-            ));
-        }
-        for (sensor, errors) in
-            [("gyroscope", &self.gyroscope), ("accelerometer", &self.accelerometer)]
-        {
-            errors.check(sensor)?;
-        }
-        Ok(())
+        Ok(check::check(self)?)
     }
 }
 
@@ -174,25 +121,41 @@ impl Scene {
 mod tests {
     use super::*;
     use crate::scene::{
-        Axes, BandVibrationTerm, FlickerTerm, GaussMarkovTerm, SensorErrors, VibrationTerm,
+        Axes, BandVibrationTerm, FlickerTerm, GaussMarkovTerm, Poles, SensorErrors, VibrationTerm,
     };
 
     #[test]
     fn every_term_has_its_key() {
         let text = "[gyroscope]\nturn_on_bias = 1e-3\nrate_ramp = [1e-9, 0, -1e-9]\n\
-             saturation = 35\nquantisation = 1.3e-4\n\
+             saturation = 35\nquantisation = 1.3e-4\nincrement_quantisation = 1e-6\n\
+             lever_arm_m = [0.1, 0, -0.2]\nscale_error = 0.01\n\
+             misalignment_rad = [[1e-3, 0], [0, 2e-3], [0, 0]]\ng_sensitivity = [1e-4, 0, 2e-4]\n\
+             temperature_coefficient = 1e-4\nlowpass_hz = 80\nlowpass_poles = 2\n\
              [gyroscope.flicker]\nbias_instability = 1e-4\nshortest_tau_s = 1\n\
              longest_tau_s = 1000\n\
              [gyroscope.gauss_markov]\nstandard_deviation = [1, 2, 3]\ncorrelation_time_s = 300\n\
+             [accelerometer]\nscale_misalignment = [[1, 0, 0], [0, 1, 0], [0, 0.1, 1]]\n\
              [accelerometer.vibration]\namplitude = 0.5\nfrequency_hz = 47\n\
              [accelerometer.band_vibration]\nstandard_deviation = 0.1\nfrequency_hz = 30\n\
-             bandwidth_hz = 10\n";
+             bandwidth_hz = 10\n\
+             [temperature]\nstart_c = 5\nrise_k = 20\ntime_constant_s = 180\nrate_k_s = 1e-3\n\
+             [clock]\noffset_s = 0.01\ndrift_ppm = -20\njitter_s = 1e-4\n\
+             jitter_uniform_s = 2e-4\nlost_fraction = 0.01\nlost_burst = 5\n";
+        let text = &format!("samples = \"mean\"\n{text}");
         let scene = Scene::from_toml(text, "a.toml").unwrap();
         let gyroscope = SensorErrors {
             turn_on_bias: [1e-3; 3],
             rate_ramp: [1e-9, 0.0, -1e-9],
             saturation: Some(35.0),
             quantisation: Some(1.3e-4),
+            increment_quantisation: Some(1e-6),
+            lever_arm_m: [0.1, 0.0, -0.2],
+            scale_error: [0.01; 3],
+            misalignment_rad: [[1e-3, 0.0], [0.0, 2e-3], [0.0, 0.0]],
+            g_sensitivity: [[1e-4, 0.0, 0.0], [0.0; 3], [0.0, 0.0, 2e-4]],
+            temperature_coefficient: [1e-4; 3],
+            lowpass_hz: Some(80.0),
+            lowpass_poles: Poles::Two,
             flicker: Some(FlickerTerm {
                 bias_instability: Axes([1e-4; 3]),
                 shortest_tau_s: 1.0,
@@ -205,6 +168,7 @@ mod tests {
             ..SensorErrors::default()
         };
         let accelerometer = SensorErrors {
+            scale_misalignment: Some([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.1, 1.0]]),
             vibration: Some(VibrationTerm { amplitude: Axes([0.5; 3]), frequency_hz: 47.0 }),
             band_vibration: Some(BandVibrationTerm {
                 standard_deviation: Axes([0.1; 3]),
@@ -214,6 +178,23 @@ mod tests {
             ..SensorErrors::default()
         };
         assert_eq!((scene.gyroscope, scene.accelerometer), (gyroscope, accelerometer));
+        let temperature = Temperature {
+            start_c: Some(5.0),
+            rise_k: 20.0,
+            time_constant_s: Some(180.0),
+            rate_k_s: 1e-3,
+            ..Temperature::default()
+        };
+        let clock = ClockErrors {
+            offset_s: 0.01,
+            drift_ppm: -20.0,
+            jitter_s: 1e-4,
+            jitter_uniform_s: 2e-4,
+            lost_fraction: 0.01,
+            lost_burst: Some(5.0),
+        };
+        assert_eq!((scene.samples, scene.clock), (SampleKind::Mean, clock));
+        assert_eq!(scene.temperature, Some(temperature));
     }
 
     #[test]
@@ -242,6 +223,7 @@ mod tests {
                 constant_bias: [0.1, -0.2, 0.0],
                 ..SensorErrors::default()
             },
+            ..Scene::default()
         };
         assert_eq!(scene, expected);
         assert_eq!(Scene::from_toml("", "empty").unwrap(), Scene::default());
@@ -275,6 +257,27 @@ mod tests {
             ("start_ns = 9223372036854775807", &["2262"]),
             ("gravity = inf", &["gravity = inf"]),
             ("seed = = 1", &["line 1"]),
+            ("seed = 1\nrate_hz = 0", &["line 2", "0 Hz"]),
+            ("\n[gyroscope]\n\nrandom_walk = -1", &["line 4", "random_walk = -1"]),
+            ("[gyroscope]\nnoise_densty = 1", &["line 2", "`noise_densty`", "`noise_density`"]),
+            ("samples = \"increment\"", &["line 1", "`increment`", "`increments`"]),
+            ("[gyroscope]\nsaturation = \"2000 deg/s\"", &["line 2", "gyroscope.saturation"]),
+            ("[gyroscope]\nnoise_density = \"0.1 deg/s\"", &["gyroscope.noise_density", "plain"]),
+            ("[gyroscope]\nlowpass_hz = 9\nlowpass_poles = 3", &["line 3", "give 1 or 2"]),
+            ("[gyroscope]\nlowpass_poles = 2", &["line 2", "needs a lowpass_hz"]),
+            ("[gyroscope]\ng_sensitivity = [1, 2]", &["line 2", "a matrix"]),
+            ("[gyroscope]\nlever_arm_m = 0.1", &["line 2", "gyroscope.lever_arm_m"]),
+            ("[gyroscope]\nlever_arm_m = [0, 0, nan]", &["line 2", "lever_arm_m = NaN"]),
+            ("[gyroscope]\nscale_error = 1\nscale_misalignment = 1", &["line 3", "not both"]),
+            ("[accelerometer]\ng_sensitivity = 1", &["line 2", "gyroscope"]),
+            ("[gyroscope]\ntemperature_coefficient = 1", &["line 2", "[temperature]"]),
+            ("[temperature]\nrise_k = 1", &["line 2", "time_constant_s"]),
+            ("[temperature]\nstart_c = -300", &["line 2", "start_c = -300"]),
+            ("[clock]\nlost_fraction = 1", &["line 2", "lost_fraction = 1", "below 1"]),
+            ("[clock]\nlost_burst = 3", &["line 2", "lost_fraction"]),
+            ("[clock]\nlost_fraction = 0.9\nlost_burst = 2", &["line 3", "from 9"]),
+            ("[clock]\njitter_s = -1", &["line 2", "jitter_s = -1"]),
+            ("start_ns = 0\n[clock]\noffset_s = -1", &["line 3", "before 1970"]),
         ] {
             let error = Scene::from_toml(text, "a.toml").unwrap_err().to_string();
             for word in words {

@@ -18,23 +18,42 @@
 //! # Ok::<(), imu_tools::error::Error>(())
 //! ```
 
+mod axes;
 mod chain;
+mod check;
 mod clock;
 mod duration;
+mod error_term;
 mod errors;
+mod felt;
 mod file;
+mod lay;
+mod located;
+mod mount;
+mod prepare;
 mod simulator;
+mod stamps;
+mod temperature;
+mod terms_file;
 mod truth;
 
+pub use axes::Axes;
 pub use clock::Rate;
 pub use duration::{display_duration, parse_duration};
+pub use error_term::{Contributions, ErrorTerm};
 pub use errors::{
-    Axes, BandVibrationTerm, FlickerTerm, GaussMarkovTerm, SensorErrors, VibrationTerm,
+    BandVibrationTerm, FlickerTerm, GaussMarkovTerm, Poles, SensorErrors, VibrationTerm,
 };
 pub use simulator::{Simulator, Truth};
+pub use stamps::ClockErrors;
+pub use temperature::Temperature;
+pub use terms_file::TermsWriter;
 pub use truth::TruthWriter;
 
-use imu_core::trajectory::{Ellipse, GRAVITY, Motion, Rest, Trajectory};
+use imu_core::trajectory::GRAVITY;
+use serde::Deserialize;
+
+use crate::recording::SampleKind;
 
 /// The stamp of the first sample if nothing else is asked for: 1 600 000 000 s after the Unix epoch
 /// (13 September 2020, 12:26:40 UTC), a constant so that the same scene gives the same bytes.
@@ -58,6 +77,12 @@ pub struct Scene {
     pub seed: u64,
     /// The stamp of the first sample, nanoseconds after the epoch; not negative.
     pub start_ns: i64,
+    /// What a sample says of its interval.
+    pub samples: SampleKind,
+    /// The temperature of both sensors; `None`: constant, and of no effect.
+    pub temperature: Option<Temperature>,
+    /// What is wrong with the stamps, and which samples get lost.
+    pub clock: ClockErrors,
     /// Errors of the gyroscope, rad/s.
     pub gyroscope: SensorErrors,
     /// Errors of the accelerometer, m/s².
@@ -74,6 +99,9 @@ impl Default for Scene {
             duration_ns: DEFAULT_DURATION_NS,
             seed: 1,
             start_ns: DEFAULT_START_NS,
+            samples: SampleKind::Instantaneous,
+            temperature: None,
+            clock: ClockErrors::default(),
             gyroscope: SensorErrors::default(),
             accelerometer: SensorErrors::default(),
         }
@@ -81,22 +109,13 @@ impl Default for Scene {
 }
 
 /// A true motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
 pub enum Path {
     /// Standing still and level at the origin.
     Rest,
-    /// The classic ellipse ([`Ellipse`]).
+    /// The classic ellipse ([`imu_core::trajectory::Ellipse`]).
     Ellipse,
-}
-
-impl Path {
-    /// The motion `t_ns` after the start.
-    fn at(self, gravity: f64, t_ns: i64) -> Motion<f64> {
-        match self {
-            Self::Rest => Rest { gravity }.at(t_ns),
-            Self::Ellipse => Ellipse { gravity }.at(t_ns),
-        }
-    }
 }
 
 /// The three noise levels of the course program `vio_data_simulation`.

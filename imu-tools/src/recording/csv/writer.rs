@@ -5,10 +5,25 @@ use std::path::Path;
 
 use crate::error::Error;
 use crate::output::Output;
-use crate::recording::{Block, Sink, merge};
+use crate::recording::{Block, Contents, SampleKind, Sink, merge};
 
-const HEADER: &str = "timestamp [ns],gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s],\
-                      accel_x [m/s^2],accel_y [m/s^2],accel_z [m/s^2]\n";
+/// The names of the columns; a program that knows rates takes no increments for them.
+const fn header(samples: SampleKind) -> &'static str {
+    match samples {
+        SampleKind::Instantaneous => {
+            "timestamp [ns],gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s],\
+             accel_x [m/s^2],accel_y [m/s^2],accel_z [m/s^2]"
+        }
+        SampleKind::Mean => {
+            "timestamp [ns],gyro_mean_x [rad/s],gyro_mean_y [rad/s],gyro_mean_z [rad/s],\
+             accel_mean_x [m/s^2],accel_mean_y [m/s^2],accel_mean_z [m/s^2]"
+        }
+        SampleKind::Increments => {
+            "timestamp [ns],delta_angle_x [rad],delta_angle_y [rad],delta_angle_z [rad],\
+             delta_velocity_x [m/s],delta_velocity_y [m/s],delta_velocity_z [m/s]"
+        }
+    }
+}
 
 /// Text is handed on when there is so much of it.
 const PIECE: usize = 256 * 1024;
@@ -17,6 +32,7 @@ const PIECE: usize = 256 * 1024;
 pub struct CsvWriter {
     output: Output,
     text: Vec<u8>,
+    temperature: bool,
 }
 
 impl CsvWriter {
@@ -25,9 +41,19 @@ impl CsvWriter {
     /// # Errors
     /// When the folder cannot be written.
     pub fn create(path: &Path) -> Result<Self, Error> {
+        Self::create_with(path, Contents::default())
+    }
+
+    /// The same, of a recording that holds `contents`.
+    ///
+    /// # Errors
+    /// When the folder cannot be written.
+    pub fn create_with(path: &Path, contents: Contents) -> Result<Self, Error> {
+        let Contents { samples, temperature } = contents;
         let mut text = Vec::with_capacity(PIECE + 1024);
-        text.extend_from_slice(HEADER.as_bytes());
-        Ok(Self { output: Output::create(path)?, text })
+        text.extend_from_slice(header(samples).as_bytes());
+        text.extend_from_slice(if temperature { b",temperature [degC]\n" } else { b"\n" });
+        Ok(Self { output: Output::create(path)?, text, temperature })
     }
 
     fn flush(&mut self) -> Result<(), Error> {
@@ -75,10 +101,19 @@ pub(crate) fn push_integer(text: &mut Vec<u8>, number: i64) {
 
 impl Sink for CsvWriter {
     fn write_block(&mut self, block: &Block) -> Result<(), Error> {
+        let mut temperatures = block.temperature.iter().peekable();
         merge(block, |stamp_ns, rate, force| {
             push_integer(&mut self.text, stamp_ns);
             push_sensor(&mut self.text, rate);
             push_sensor(&mut self.text, force);
+            if self.temperature {
+                while temperatures.next_if(|t| t.stamp_ns < stamp_ns).is_some() {}
+                self.text.push(b',');
+                if let Some(now) = temperatures.next_if(|t| t.stamp_ns == stamp_ns) {
+                    let mut digits = zmij::Buffer::new();
+                    self.text.extend_from_slice(digits.format(now.celsius).as_bytes());
+                }
+            }
             self.text.push(b'\n');
             if self.text.len() < PIECE { Ok(()) } else { self.flush() }
         })

@@ -6,10 +6,15 @@ use std::path::{Path, PathBuf};
 use crate::error::Error;
 use crate::output::{Output, Unfinished};
 use crate::recording::csv::{push_integer, push_values};
-use crate::recording::{BLOCK_SAMPLES, Block, Sample, Sink, Timeline};
+use crate::recording::{BLOCK_SAMPLES, Block, Sample, SampleKind, Sink, Timeline};
 
 const HEADER: &str = "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],\
                       a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
+
+/// The header of increments.
+const INCREMENTS: &str = "#timestamp [ns],delta_angle_x [rad],delta_angle_y [rad],\
+                          delta_angle_z [rad],delta_velocity_x [m s^-1],\
+                          delta_velocity_y [m s^-1],delta_velocity_z [m s^-1]\n";
 
 /// Text is handed on when there is so much of it.
 const PIECE: usize = 256 * 1024;
@@ -30,6 +35,7 @@ pub struct EurocWriter {
     accelerometer: VecDeque<Sample>,
     /// What the stamps show of the rate.
     timeline: Timeline,
+    samples: SampleKind,
 }
 
 /// The folder that the recording at `path` is written into: `imu0` in `path`, if that is a `mav0`, or
@@ -50,6 +56,14 @@ impl EurocWriter {
     /// # Errors
     /// When `path` is a pipe, or the folders cannot be made.
     pub fn create(path: &Path) -> Result<Self, Error> {
+        Self::create_with(path, SampleKind::Instantaneous)
+    }
+
+    /// The same, of samples of this kind, which `sensor.yaml` says in its comment.
+    ///
+    /// # Errors
+    /// When `path` is a pipe, or the folders cannot be made.
+    pub fn create_with(path: &Path, samples: SampleKind) -> Result<Self, Error> {
         if path == Path::new("-") {
             return Err(Error::usage("EuRoC's recordings are folders: a pipe cannot be one"));
         }
@@ -67,8 +81,10 @@ impl EurocWriter {
             gyroscope: VecDeque::new(),
             accelerometer: VecDeque::new(),
             timeline: Timeline::new(),
+            samples,
         };
-        writer.text.extend_from_slice(HEADER.as_bytes());
+        let header = if samples == SampleKind::Increments { INCREMENTS } else { HEADER };
+        writer.text.extend_from_slice(header.as_bytes());
         for folder in made {
             let make = || std::fs::create_dir(&folder).map(|()| ((), folder.clone()));
             let ((), unfinished) =
@@ -145,9 +161,10 @@ impl Sink for EurocWriter {
         let mut sensor = Output::create(&self.folder.join("sensor.yaml"))?;
         let rate = self.rate_hz().map_or_else(String::new, |rate| format!("rate_hz: {rate}\n"));
         let yaml = format!(
-            "sensor_type: imu\ncomment: angular rate in rad/s, specific force in m/s^2, sensor \
-             axes\nT_BS:\n  cols: 4\n  rows: 4\n  data: [1.0, 0.0, 0.0, 0.0,\n         0.0, 1.0, \
-             0.0, 0.0,\n         0.0, 0.0, 1.0, 0.0,\n         0.0, 0.0, 0.0, 1.0]\n{rate}"
+            "sensor_type: imu\ncomment: {}, sensor axes\nT_BS:\n  cols: 4\n  rows: 4\n  \
+             data: [1.0, 0.0, 0.0, 0.0,\n         0.0, 1.0, 0.0, 0.0,\n         0.0, 0.0, 1.0, \
+             0.0,\n         0.0, 0.0, 0.0, 1.0]\n{rate}",
+            self.samples.meaning()
         );
         sensor.write(yaml.as_bytes())?;
         // Both are complete before either takes its place.
