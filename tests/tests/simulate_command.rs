@@ -77,6 +77,120 @@ fn truth_stands_beside_the_samples() {
     assert_eq!((column(first, "p_x_m"), column(first, "gyro_bias_x_rad_s")), (20.0, 0.0));
 }
 
+/// FNV-1a of what the presets write: the bytes that they had before scenes knew kinds of samples, clocks
+/// and places of sensors. What a scene does not switch on changes nothing.
+#[test]
+fn the_files_of_presets_never_change() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let hash = |path: &str| {
+        let bytes = fs::read(path).expect("written");
+        bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+            (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        })
+    };
+    for (preset, name, expected) in [
+        ("low", "a.csv", 0xf48a_69af_decb_4dcc),
+        ("low", "a.bag", 0x2f79_244a_75a2_19ba),
+        ("mid", "a.csv", 0xfb88_4814_785d_0bc7),
+        ("mid", "a.bag", 0x559a_1624_b3cf_2105),
+        ("mid", "a.mcap", 0x4ede_1d59_daec_aeb3),
+        ("high", "a.csv", 0xabcd_7246_c4f2_b5f2),
+        ("high", "a.bag", 0x4ffb_bc8b_f518_58d6),
+    ] {
+        let path = at(&folder, name);
+        assert_eq!(run(&["simulate", preset, "--duration", "20s", "-o", &path]).code, 0);
+        assert_eq!(hash(&path), expected, "{preset} {name}");
+    }
+    let (csv, truth) = (at(&folder, "moving.csv"), at(&folder, "truth.csv"));
+    let moving = ["simulate", "mid", "--moving", "--duration", "20s", "--seed", "7"];
+    let said = run(&[&moving[..], &["--lowpass", "42", "-o", &csv, "--truth", &truth]].concat());
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!((hash(&csv), hash(&truth)), (0x3ed7_def8_e19b_a8b0, 0xd817_1847_b024_857e));
+}
+
+/// The root of the repository.
+fn root(path: &str) -> String {
+    format!("{}/../{path}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Every scene that comes with the program runs, and writes what it says.
+#[test]
+fn example_scenes_run() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let [csv, truth, terms] = ["a.csv", "truth.csv", "terms.csv"].map(|name| at(&folder, name));
+    for scene in ["everything", "phone", "drone"] {
+        let scene = root(&format!("examples/scenes/{scene}.toml"));
+        let asked = ["simulate", &scene, "--duration", "3s", "-o", &csv];
+        let beside = ["--truth", &truth, "--truth-terms", &terms];
+        let said = run(&[&asked[..], &beside].concat());
+        assert_eq!(said.code, 0, "{}", said.err);
+        assert!(said.err.contains(&format!(", and the terms to {terms}")), "{}", said.err);
+        let width = |path: &str| {
+            let text = fs::read_to_string(path).expect("written");
+            let mut widths = text.lines().map(|line| line.split(',').count());
+            let first = widths.next().expect("a header");
+            assert!(widths.all(|width| width == first), "{path}");
+            (first, text.lines().count())
+        };
+        let (written, due) = (width(&csv).1, width(&truth).1);
+        assert_eq!(width(&terms).1, due);
+        assert!(written <= due && due > 600);
+    }
+}
+
+/// Every scene that docs/scenes.md shows is one.
+#[test]
+fn the_scenes_of_the_documentation_are_scenes() {
+    let text = fs::read_to_string(root("docs/scenes.md")).expect("the documentation");
+    let shown = text.split("```toml\n").skip(1).map(|rest| rest.split("```").next());
+    let mut count = 0;
+    for scene in shown {
+        imu_tools::scene::Scene::from_toml(scene.expect("an end"), "docs/scenes.md")
+            .expect("valid");
+        count += 1;
+    }
+    assert_eq!(count, 1);
+}
+
+/// What a format can say of the kind of its samples, and of the temperature, it says; else the user is
+/// told.
+#[test]
+fn formats_tell_what_their_samples_are() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let scene = at(&folder, "scene.toml");
+    fs::write(
+        &scene,
+        "duration = 2\nsamples = \"increments\"\n[temperature]\nstart_c = 30\nrate_k_s = 2\n",
+    )
+    .expect("written");
+    let [csv, bag, euroc] = ["a.csv", "a.bag", "mav0"].map(|name| at(&folder, name));
+    let said = run(&["simulate", &scene, "-o", &csv]);
+    assert_eq!((said.code, said.err.lines().count()), (0, 1), "{}", said.err);
+    let text = fs::read_to_string(&csv).expect("written");
+    let header = text.lines().next().expect("a header");
+    assert!(header.contains(",delta_angle_x [rad],"), "{header}");
+    assert!(header.ends_with(",temperature [degC]"), "{header}");
+    assert!(text.lines().nth(2).expect("a line").ends_with(",0.04905,30.01"));
+    let said = run(&["calibrate", &csv]);
+    assert_eq!(said.code, 1, "increments are not taken for rates: {}", said.out);
+
+    let said = run(&["simulate", &scene, "-o", &bag]);
+    assert!(said.err.contains("increments of angle in rad and of velocity in m/s"), "{}", said.err);
+    assert!(said.err.contains("the temperature is not in it"), "{}", said.err);
+    let said = run(&["simulate", &scene, "-o", &euroc]);
+    assert!(!said.err.contains("increments"), "{}", said.err);
+    let yaml = fs::read_to_string(format!("{euroc}/imu0/sensor.yaml")).expect("written");
+    assert!(yaml.contains("comment: increments of angle in rad"), "{yaml}");
+
+    let said = run(&["simulate", &scene, "--samples", "mean", "-o", &csv]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let mut source = recording::open(csv.as_ref(), &ReadOptions::default()).expect("readable");
+    let mut block = Block::default();
+    assert!(source.next_block(&mut block).expect("readable"));
+    assert_eq!(block.accelerometer[7].value, [0.0, 0.0, 9.81]);
+    assert_eq!((block.temperature.len(), block.temperature[1].celsius), (400, 30.01));
+}
+
 #[test]
 fn flags_stand_over_a_scene_file() {
     let folder = tempfile::tempdir().expect("temporary folder");
@@ -117,12 +231,14 @@ fn mistakes_are_one_sentence_and_leave_no_file() {
         (&["mid", "-o", &bag, "--truth", &bag], 2, "cannot both go to"),
         (&["mid", "-o", &bag, "--truth", &at(&folder, "./a.bag")], 2, "cannot both go to"),
         (&["mid", "-o", "-", "--truth", "/dev/stdout"], 2, "cannot both go to"),
+        (&["mid", "-o", &bag, "--truth-terms", &bag], 2, "the recording and the terms cannot both"),
+        (&["mid", "-o", &bag, "--samples", "means"], 2, "instantaneous, mean or increments"),
         (&["mid", "-o", &bag, "--seed", "-1"], 2, "'-1'"),
         (&[&latin, "-o", &bag], 1, "latin.toml is no scene file: it is not text in UTF-8"),
         (&["mid", "-o", &at(&folder, "a.xlsx")], 2, "a.xlsx"),
         (&["mid", "-o", &nowhere], 1, "no such file or folder"),
         (&[&absent, "-o", &bag], 1, "cannot read"),
-        (&[&scene, "-o", &bag], 1, "line 2: unknown field `sede`"),
+        (&[&scene, "-o", &bag], 1, "line 2: there is no key `sede`; `seed` is meant?"),
         (&["mid", "-o", here], 2, here),
     ] {
         let said = run(&[&["simulate"], arguments].concat());

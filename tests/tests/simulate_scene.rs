@@ -74,7 +74,8 @@ fn a_scene_gives_the_bits_of_the_compiled_composition_and_of_its_own_truth() {
         for i in 0..block.gyroscope.len() {
             let (rate, force) = samples.next().expect("as many with truth as without");
             assert_eq!((&block.gyroscope[i], &block.accelerometer[i]), (rate, force));
-            assert_eq!(rate.stamp_ns, truth.stamps_ns[i]);
+            assert_eq!(truth.stamps_ns[i], Some(rate.stamp_ns));
+            assert_eq!(truth.times_ns[i], rate.stamp_ns);
             let motion: Motion<f64> = Ellipse::default().at(rate.stamp_ns - scene.start_ns);
             assert_eq!(motion, truth.motions[i]);
             // The scene's sum of a bias starts at zero, in the order of the composition.
