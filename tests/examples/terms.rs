@@ -23,7 +23,7 @@ fn main() {
 
 /// Prints a scalar's table; how many lie within, and of how many.
 fn scalar<T: Normal>(name: &str) -> (u64, u64) {
-    print!("{name:27}");
+    print!("{name:31}");
     for octave in 0..OCTAVES {
         print!(" {:>5.4}", format!("{:.2}", f64::from(1 << octave) * DT));
     }
@@ -45,7 +45,7 @@ fn scalar<T: Normal>(name: &str) -> (u64, u64) {
                 *inside += u64::from(*low < v && v < *high);
             }
         }
-        print!("{:27}", case.name);
+        print!("{:31}", case.name);
         for inside in inside {
             print!(" {inside:>5}");
             total += inside;
