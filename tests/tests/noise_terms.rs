@@ -81,7 +81,7 @@ fn interval_means_of_gauss_markov_have_the_continuous_form() {
         let x = block as f64 * DT / time;
         // From the exponential series where the bracket would cancel.
         let bracket = if x < 0.02 {
-            x / 3.0 - x * x / 4.0 + 7.0 / 60.0 * x * x * x
+            x * x * (1.0 / 3.0 - x / 4.0 + 7.0 / 60.0 * x * x)
         } else {
             1.0 - (3.0 - 4.0 * (-x).exp() + (-2.0 * x).exp()) / (2.0 * x)
         };
