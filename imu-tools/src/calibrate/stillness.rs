@@ -22,22 +22,15 @@ use std::collections::VecDeque;
 
 use super::limits::Limits;
 use super::shifts::Shifts;
-use super::usual::{Usual, WindowStatistics};
+use super::usual::{BEYOND, GROUP, RING, Usual, WindowStatistics};
 use crate::recording::Event;
 
 /// Windows that show what is usual before any is judged.
 const START: usize = 256;
-/// Windows of which the usual is learnt later on.
-pub(super) const RING: usize = 512;
 /// In a recording of fewer windows nothing is judged.
 const FEWEST: usize = 16;
 /// The usual is learnt anew after so many windows.
 const RELEARN: u64 = 64;
-/// Spreads from the usual beyond which a window is disturbed: for Gaussian noise, less than one of
-/// 10¹⁴; real noise changes a little with time and temperature.
-pub(super) const BEYOND: f64 = 8.0;
-/// Windows of a weak disturbance that are judged together.
-pub(super) const GROUP: usize = 8;
 /// A window waits for so many after it: a group may still condemn it, or its neighbour.
 const WAIT: usize = GROUP + 2;
 /// A window with a hole of so many is no neighbour of the others.

@@ -4,9 +4,8 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use crate::tradeoff::allan::{
-    Accuracy, Estimator, Gather, Method, NOISES, Row, Scalar, Scatter, Tradeoff,
-};
+use crate::tradeoff::allan::{Accuracy, NOISES, Row, Scatter, Tradeoff};
+use crate::tradeoff::estimators::{Estimator, Gather, Method, Scalar};
 
 /// Where the section of a page begins and ends.
 const BEGIN: &str = "<!-- begin: imu tradeoff allan -->";

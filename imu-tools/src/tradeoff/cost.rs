@@ -9,7 +9,9 @@ use std::time::Instant;
 
 use imu_core::allan::AllanLadder;
 
-use super::allan::{Estimator, Gather, LEVELS, Method, Plan, Scalar, overlapping, read, sampling};
+use super::estimators::{
+    ESTIMATORS, Estimator, Gather, LEVELS, Method, Scalar, overlapping, read, sampling,
+};
 use crate::calibrate::block_means::BlockMeans;
 use crate::calibrate::maximum_likelihood;
 
@@ -44,8 +46,8 @@ fn seconds(run: impl FnOnce()) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-/// Times the estimators on a record.
-pub(super) fn measure(plan: &Plan, estimators: &[Estimator], record: &[[f64; 3]]) -> Prices {
+/// Times the estimators on a record, sampled every `tau0_s` seconds.
+pub(super) fn measure(tau0_s: f64, record: &[[f64; 3]]) -> Prices {
     let pass = record.get(..SAMPLES).unwrap_or(record);
     let single: Vec<[f32; 3]> = pass.iter().map(|row| row.map(|x| x as f32)).collect();
     let column: Vec<f64> = record.iter().map(|row| row[0]).collect();
@@ -81,14 +83,13 @@ pub(super) fn measure(plan: &Plan, estimators: &[Estimator], record: &[[f64; 3]]
         fastest.map(|time| time * 1e9 / (3 * pass.len()) as f64);
     let mut whole = BlockMeans::new();
     whole.extend(record);
-    let tau0_s = 1.0 / plan.rate_hz;
     let best_of =
         |run: &dyn Fn()| (0..PASSES_AT_END).map(|_| seconds(run)).fold(f64::INFINITY, f64::min);
     let octaves = overlapping(&column);
     let all_windows = best_of(&|| {
         black_box(overlapping(black_box(&column)));
     });
-    let costs = estimators.iter().map(|&Estimator { gather, scalar, method }| {
+    let costs = ESTIMATORS.iter().map(|&Estimator { gather, scalar, method }| {
         let (ns_per_value, state_bytes) = match (gather, scalar) {
             (Gather::Disjoint, Scalar::F32) => (disjoint32, size_of_val(&ladders.0)),
             (Gather::Disjoint, Scalar::F64) => (disjoint64, size_of_val(&ladders.1)),

@@ -7,5 +7,6 @@
 
 pub mod allan;
 mod cost;
+pub mod estimators;
 
 pub use cost::Cost;

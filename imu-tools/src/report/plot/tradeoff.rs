@@ -4,7 +4,8 @@ use super::chart::Chart;
 use super::scale::Scale;
 use super::{Figure, WIDTH};
 use crate::report::tradeoff::name;
-use crate::tradeoff::allan::{Method, NOISES, Tradeoff};
+use crate::tradeoff::allan::{NOISES, Tradeoff};
+use crate::tradeoff::estimators::Method;
 
 const HEIGHT: f64 = 400.0;
 
