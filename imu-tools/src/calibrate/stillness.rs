@@ -3,9 +3,9 @@
 //! Samples are held back in windows of about a second. A window in which the sensor is touched has
 //! a larger variance than the others, or a mean that jumps away from its neighbour's. What is usual
 //! is learnt from the recording: centre and spread of the logarithm of the variance, and the size of
-//! the steps between neighbouring means, both from the lower quartile of the last [`RING`] windows,
+//! the steps between neighbouring means, both from the lower quartile of the last 512 windows,
 //! so that they stay right while up to two thirds of those are disturbed. A window beyond
-//! [`BEYOND`] spreads is disturbed, and so are eight in a row whose average is (a weak, long
+//! 8 spreads is disturbed, and so are eight in a row whose average is (a weak, long
 //! vibration); with each go its two neighbours. So does a window in which an axis stands still that
 //! otherwise never does: a sensor or a driver that hangs. Averages of more windows show a small change
 //! that lasts ([`Shifts`]).
@@ -22,7 +22,7 @@ use std::collections::VecDeque;
 
 use super::limits::Limits;
 use super::shifts::Shifts;
-use super::usual::{BEYOND, GROUP, RING, Usual, WindowStatistics};
+use super::usual::{GROUP, Usual, WindowStatistics};
 use crate::recording::Event;
 
 /// Windows that show what is usual before any is judged.

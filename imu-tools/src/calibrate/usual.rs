@@ -14,10 +14,10 @@ use std::collections::VecDeque;
 use super::limits::Limits;
 
 /// Windows of which the usual is learnt later on.
-pub(super) const RING: usize = 512;
+const RING: usize = 512;
 /// Spreads from the usual beyond which a window is disturbed: for Gaussian noise, less than one of
 /// 10¹⁴; real noise changes a little with time and temperature.
-pub(super) const BEYOND: f64 = 8.0;
+const BEYOND: f64 = 8.0;
 /// Windows of a weak disturbance that are judged together.
 pub(super) const GROUP: usize = 8;
 /// Standard deviations below the mean of a Gaussian's quantile at 25 %, and from there to 5 %.
