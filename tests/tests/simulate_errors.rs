@@ -124,11 +124,10 @@ fn the_bias_is_the_sum_of_its_terms() {
     let (_, truths) = play(&all(), true);
     for truth in &truths {
         for (i, bias) in truth.gyroscope_bias.iter().enumerate() {
-            for axis in 0..3 {
-                let terms = &truth.gyroscope_terms[axis];
+            for (terms, bias) in truth.gyroscope_terms.iter().zip(bias) {
                 let from = sum(terms, Some(ErrorTerm::RandomWalk), i);
                 let until = sum(terms, Some(ErrorTerm::Vibration), i);
-                assert!((until - from - bias[axis]).abs() < 5e-13);
+                assert!((until - from - bias).abs() < 5e-13);
             }
         }
     }
