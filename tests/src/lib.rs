@@ -8,4 +8,5 @@ pub mod disturbed;
 pub mod mcaps;
 pub mod monte_carlo;
 pub mod recordings;
+pub mod term_records;
 pub mod ulogs;

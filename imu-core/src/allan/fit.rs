@@ -85,10 +85,10 @@ pub struct NoiseFit {
 }
 
 /// −2 ln likelihood ratio at the ends of a two-sided 90 % interval: 1.645².
-const INTERVAL: f64 = 2.7055;
+pub(super) const INTERVAL: f64 = 2.7055;
 /// The same for a bound, one-sided 90 %: 1.2816². A parameter for which zero lies within such a
 /// bound is not observable.
-const UPPER: f64 = 1.6424;
+pub(super) const UPPER: f64 = 1.6424;
 /// Half-distance of numerical derivatives over ln(K/N).
 const DELTA: f64 = 0.02;
 

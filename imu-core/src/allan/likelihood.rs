@@ -163,6 +163,7 @@ impl Likelihood<'_> {
                 && o.differences >= enough
                 && o.variance > 1e-200
                 && o.variance < 1e200 // far from where squares of it are lost
+                && (1e-6..1e6).contains(&o.white_gain)
         })
     }
 

@@ -14,6 +14,7 @@ mod likelihood;
 mod reading;
 mod scan;
 mod search;
+mod terms;
 mod total;
 
 pub use chi_square::{chi_square_quantile, chi_square_tails};
@@ -22,4 +23,7 @@ pub use fit::{NoiseFit, Parameter, average_octaves, fit_noise, fit_noise_from, f
 pub use ladder::{AllanLadder, HadamardLadder, Ladder};
 pub use reading::{Octave, Sampling};
 pub use scan::Contradiction;
+pub use terms::{
+    Terms, TermsFit, fit_terms, fit_terms_from, likelihood_ratio, select_terms, select_terms_from,
+};
 pub use total::{Total, TwoStage};

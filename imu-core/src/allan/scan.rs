@@ -15,13 +15,13 @@ pub struct Contradiction {
 }
 
 /// Contradiction of an octave, squared standard deviations.
-const CONTRADICTS: f64 = 16.0;
+pub(super) const CONTRADICTS: f64 = 16.0;
 /// So many octaves more are left out, where the cause of a contradiction fades.
-const MARGIN: usize = 2;
+pub(super) const MARGIN: usize = 2;
 /// So many of the shortest octaves tell a filter from noise that is not of this model.
 const WHITE_OCTAVES: usize = 5;
 /// The scan for contradictions starts where a record is this many averaging times long.
-const SCAN_FROM: f64 = 64.0;
+pub(super) const SCAN_FROM: f64 = 64.0;
 
 /// Looks for short octaves that contradict the longer ones. Its memory is free again when the fit
 /// begins.
@@ -56,7 +56,7 @@ pub(super) fn contradiction(all: &Likelihood) -> Option<Contradiction> {
 
 /// Whether the shortest octaves are white noise among themselves. No filter leaves them so: then it
 /// is the longer ones that are something else, and N is to be had from the short ones.
-fn short_are_white(all: &Likelihood) -> bool {
+pub(super) fn short_are_white(all: &Likelihood) -> bool {
     let shortest = all.octaves.get(..WHITE_OCTAVES).unwrap_or_default();
     let short = Likelihood { octaves: shortest, from: 0, ..*all };
     short.usable().count() == WHITE_OCTAVES

@@ -2,7 +2,8 @@
 
 use imu_core::allan::{Octave, Parameter};
 
-use super::{Deviation, SensorNoise, Stretch};
+use super::verdict::{Inflation, walk_for_filter};
+use super::{AxisNoise, Deviation, SensorNoise, Stretch};
 use crate::recording::Summary;
 use crate::scene::display_duration;
 
@@ -68,7 +69,12 @@ fn of_rest(to: &mut Vec<String>, sensor: &SensorNoise, keep_all: bool) {
         let unit = sensor.kind.unit();
         let hourly = slope.map(|s| format!("{:+.2e}", s * 3600.0)).join(", ");
         let what = if keep_all {
-            "kept, because --keep-all is given, and read as random walk: K is too large"
+            match sensor.pooled.rate_ramp {
+                Some(_) => "kept, because --keep-all is given, and fitted as a ramp beside K",
+                None => {
+                    "kept, because --keep-all is given, and read as random walk: K is too large"
+                }
+            }
         } else {
             "K is read from the Hadamard variance, which is blind to it"
         };
@@ -132,8 +138,19 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
     }
     for (axis, _) in AXES.iter().zip(sensor.misfit).filter(|(_, misfit)| *misfit) {
         to.push(format!(
-            "axis {axis} has more in it than white noise and a random walk (bias instability, drift, \
-             temperature, motion): take its K for an upper limit, and the intervals for too narrow"
+            "axis {axis} has more in it than {} (drift, temperature, motion): take its K for an upper \
+             limit, and the intervals for too narrow",
+            fitted(sensor)
+        ));
+    }
+    if let Some(Parameter::Observable { .. }) = sensor.pooled.bias_instability {
+        let unit = sensor.kind.unit();
+        let walk = walk_for_filter(&sensor.pooled).unwrap_or_default();
+        to.push(format!(
+            "there is flicker (bias instability B): K stands beside it, and is known less well than alone; \
+             for a filter that has no flicker, {walk:.2e} {unit}/s/√Hz goes as far in {:.0} s as B and K \
+             together, and is what files for filters hold",
+            Inflation::OVER_S
         ));
     }
     if let Some(times) = spread_of_axes(sensor) {
@@ -150,6 +167,16 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
              for hours",
             seconds(record_at_least_s)
         ));
+    }
+}
+
+/// The terms that were fitted, in words.
+fn fitted(sensor: &SensorNoise) -> &'static str {
+    let AxisNoise { bias_instability, quantisation, rate_ramp, .. } = sensor.pooled;
+    if bias_instability.is_none() && quantisation.is_none() && rate_ramp.is_none() {
+        "white noise and a random walk"
+    } else {
+        "the terms that were fitted"
     }
 }
 

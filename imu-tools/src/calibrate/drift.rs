@@ -10,6 +10,7 @@
 //!   twice that end decides nothing about long averaging times (a warm-up fades).
 //! - **Ramp.** If after that the whole record still goes further than the Hadamard variance allows,
 //!   which is blind to a linear drift, there is a ramp, and K is read from the Hadamard variance.
+//!   So it is where the fit of the octaves asks for a ramp ([`super::terms`]).
 //!
 //! Distance: the means of the first and last quarter of a stretch of length L differ by a variance
 //! of ⅔K²L + 8N²/L (¾L between their centres, less ⅓ of a quarter for averaging over each).
@@ -38,19 +39,28 @@ pub(super) struct Drift {
     pub(super) warm_up: u64,
     /// Octaves of each axis, long ones without the warm-up.
     pub(super) octaves: [[Octave; LEVELS]; 3],
-    /// Where there is a ramp.
-    pub(super) ramp: Option<Ramp>,
+    /// Unit per second, of each axis, where there is a ramp.
+    pub(super) slope: Option<[f64; 3]>,
+    /// What is not blind to anything but a ramp.
+    pub(super) hadamard: Hadamard,
 }
 
-/// A drift over all of the record.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ramp {
-    /// Unit per second, of each axis.
-    pub(super) slope: [f64; 3],
-    /// The fits to the Hadamard variance: x, y, z.
-    pub(super) axes: [NoiseFit; 3],
-    /// All of them.
-    pub(super) pooled: NoiseFit,
+/// The Hadamard variances of the means of blocks.
+#[derive(Clone, Debug)]
+pub(super) struct Hadamard {
+    pub(super) octaves: [[Octave; LEVELS]; 3],
+    pub(super) sampling: Sampling,
+    /// The first octave that is to be trusted.
+    pub(super) from: usize,
+}
+
+impl Hadamard {
+    /// The octaves of all axes that are no constant as one.
+    pub(super) fn pooled(&self) -> ([Octave; LEVELS], Sampling) {
+        let live: Vec<_> =
+            self.octaves.iter().filter(|axis| axis[COARSE].variance > 0.0).copied().collect();
+        (average_octaves(&live), Sampling { records: live.len() as u32, ..self.sampling })
+    }
 }
 
 /// Largest N and K that are plausible.
@@ -78,8 +88,9 @@ pub(super) fn examine(
     tau0_s: f64,
     from: usize,
 ) -> Drift {
-    let mut drift = Drift { warm_up: 0, octaves, ramp: None };
     let block_s = means.length() as f64 * tau0_s;
+    let hadamard = hadamard(means, 0, block_s, from);
+    let mut drift = Drift { warm_up: 0, octaves, slope: None, hadamard };
     let Some(first) = means.segments().first() else { return drift };
     let sampling = Sampling { tau0_s, difference: Difference::Allan, windows: 4, records: 1 };
 
@@ -112,8 +123,9 @@ pub(super) fn examine(
     if cut > 0 {
         drift.warm_up = cut as u64 * means.length();
         drift.octaves = without_start(&octaves, means, cut);
+        drift.hadamard = self::hadamard(means, cut, block_s, from);
     }
-    drift.ramp = ramp(means, cut, block_s, from);
+    drift.slope = slope(means, cut, block_s, &drift.hadamard);
     drift
 }
 
@@ -161,23 +173,29 @@ fn without_start(
     all
 }
 
-/// Reads K from the Hadamard variance, if the record goes further than that allows.
-fn ramp(means: &BlockMeans, cut: usize, block_s: f64, from: usize) -> Option<Ramp> {
+/// The Hadamard variances from block `cut` on.
+fn hadamard(means: &BlockMeans, cut: usize, block_s: f64, from: usize) -> Hadamard {
     let ladder = ladder::<2>(means, cut);
-    let sampling =
-        Sampling { tau0_s: block_s, difference: Difference::Hadamard, windows: 4, records: 1 };
     let shift = means.length().trailing_zeros() as usize;
-    let from = from.saturating_sub(shift).max(COARSE);
-    let octaves = [0, 1, 2].map(|axis| ladder.octaves(axis));
-    let axes = octaves.map(|axis| fit_noise_from(&axis, sampling, from));
-    let noise = axes.map(|fit| Noise::of(&fit));
+    Hadamard {
+        octaves: [0, 1, 2].map(|axis| ladder.octaves(axis)),
+        sampling: Sampling {
+            tau0_s: block_s,
+            difference: Difference::Hadamard,
+            windows: 4,
+            records: 1,
+        },
+        from: from.saturating_sub(shift).max(COARSE),
+    }
+}
+
+/// The way of each axis per second, if the record goes further than its Hadamard variance allows.
+fn slope(means: &BlockMeans, cut: usize, block_s: f64, hadamard: &Hadamard) -> Option<[f64; 3]> {
+    let Hadamard { octaves, sampling, from } = hadamard;
+    let noise = octaves.map(|axis| Noise::of(&fit_noise_from(&axis, *sampling, *from)));
     // The longest stretch shows a ramp best.
     let longest = stretches(means, cut).max_by_key(|stretch| stretch.len())?;
-    let slope = goes_too_far(longest, block_s, &noise)?;
-    let live: Vec<_> = octaves.into_iter().filter(|axis| axis[COARSE].variance > 0.0).collect();
-    let together = Sampling { records: live.len() as u32, ..sampling };
-    let pooled = fit_noise_from(&average_octaves(&live), together, from);
-    Some(Ramp { slope, axes, pooled })
+    goes_too_far(longest, block_s, &noise)
 }
 
 /// The stretches between restarts, from block `cut` on.
@@ -251,7 +269,7 @@ mod tests {
     fn noise_neither_warms_up_nor_drifts() {
         for walk in [0.0, 0.003, 0.03] {
             let drift = record(7000, walk, |_| 0.0);
-            assert!(drift.warm_up == 0 && drift.ramp.is_none(), "{walk}: {drift:?}");
+            assert!(drift.warm_up == 0 && drift.slope.is_none(), "{walk}: {drift:?}");
         }
     }
 
@@ -262,7 +280,7 @@ mod tests {
         for walk in [0.0, 0.003] {
             let drift = record(7000, walk, |t| 5.0 * (t / 600.0).min(1.0));
             assert!((6000..=18_000).contains(&drift.warm_up), "{walk}: {}", drift.warm_up);
-            assert!(drift.ramp.is_none());
+            assert!(drift.slope.is_none());
         }
     }
 
@@ -270,12 +288,14 @@ mod tests {
     fn a_ramp_is_found_and_k_read_past_it() {
         // K = walk·√10 Hz; three axes together scatter by some 10 %: five of those.
         let walk = 0.01;
-        let ramp = record(7000, walk, |t| 5e-3 * t).ramp.expect("a ramp");
-        for slope in ramp.slope {
+        let drift = record(7000, walk, |t| 5e-3 * t);
+        for slope in drift.slope.expect("a ramp") {
             // The walk goes 0.03·√4700 = 2 between the quarters (five of which are 10), the ramp 26.
             assert!((slope / 5e-3 - 1.0).abs() < 0.4, "{slope}");
         }
-        let Parameter::Observable { value, .. } = ramp.pooled.random_walk else { panic!() };
+        let (octaves, sampling) = drift.hadamard.pooled();
+        let fit = fit_noise_from(&octaves, sampling, drift.hadamard.from);
+        let Parameter::Observable { value, .. } = fit.random_walk else { panic!() };
         let k = walk * 10_f64.sqrt();
         assert!((value / k - 1.0).abs() < 0.5, "{value} {k}");
     }

@@ -1,46 +1,14 @@
 //! What the ladder of a sensor says of its noise, with all that is known of drift and filters.
 
-use imu_core::allan::{
-    Contradiction, Difference, NoiseFit, Octave, Parameter, Sampling, average_octaves, fit_noise,
-    fit_noise_from, fitted_edf,
-};
+use imu_core::allan::{Difference, Octave, Parameter, Sampling};
 
 use super::block_means::BlockMeans;
 use super::checks::Checks;
 use super::slope::{self, SlopeReading};
+use super::terms::{Fits, first_to_trust, past_a_ramp};
 use super::{AxisNoise, Deviation, LEVELS, SensorKind, SensorLadder, SensorNoise, WINDOWS};
-use super::{drift, maximum_likelihood};
+use super::{Options, drift, maximum_likelihood};
 use crate::recording::Summary;
-
-/// N and K of each axis.
-struct Fits {
-    axes: [NoiseFit; 3],
-    /// Why short τ decided nothing.
-    contradiction: Option<Contradiction>,
-}
-
-impl Fits {
-    /// The first octave that decided.
-    fn from(&self) -> usize {
-        self.contradiction.map_or(0, |c| c.octave + 1)
-    }
-}
-
-/// Fits all axes to the same octaves: one axis that shows a low-pass filter speaks for all, which
-/// share it.
-fn fit_axes(octaves: &[[Octave; LEVELS]; 3], sampling: Sampling) -> Fits {
-    let alone = octaves.map(|axis| fit_noise(&axis, sampling));
-    let found = alone.iter().filter_map(|fit| fit.contradiction);
-    let contradiction = found.max_by_key(|c| c.octave);
-    let mut fits = Fits { axes: alone, contradiction };
-    let from = fits.from();
-    for (fit, axis) in fits.axes.iter_mut().zip(octaves) {
-        if fit.contradiction.map(|c| c.octave) != contradiction.map(|c| c.octave) {
-            *fit = fit_noise_from(axis, sampling, from);
-        }
-    }
-    fits
-}
 
 /// Reads the ladder and fits it.
 pub(super) fn noise(
@@ -49,37 +17,31 @@ pub(super) fn noise(
     ladder: &SensorLadder,
     means: &BlockMeans,
     mean: [f64; 3],
-    keep_all: bool,
+    options: &Options,
 ) -> SensorNoise {
+    let Options { keep_all, terms, .. } = *options;
     let tau0_s = if stamps.rate_hz > 0.0 { 1.0 / stamps.rate_hz } else { 0.0 };
     let sampling =
         Sampling { tau0_s, difference: Difference::Allan, windows: WINDOWS as u8, records: 1 };
     let whole = [0, 1, 2].map(|axis| ladder.octaves(axis));
-    let of_whole = fit_axes(&whole, sampling);
-    let drift = drift::examine(means, whole, tau0_s, of_whole.from());
-    let (octaves, of_octaves) = if keep_all || drift.warm_up == 0 {
-        (whole, of_whole)
-    } else {
-        (drift.octaves, fit_axes(&drift.octaves, sampling))
-    };
-    let from = of_octaves.from();
-    let Fits { axes: fits, contradiction } = of_octaves;
-    // An axis that never changes is no record of noise.
-    let live: Vec<_> = octaves.into_iter().filter(|axis| axis[0].variance > 0.0).collect();
-    let together = Sampling { records: live.len() as u32, ..sampling };
-    let pooled = fit_noise_from(&average_octaves(&live), together, from);
-    let mut axes =
-        fits.map(|f| AxisNoise { noise_density: f.noise_density, random_walk: f.random_walk });
-    let mut pooled_noise =
-        AxisNoise { noise_density: pooled.noise_density, random_walk: pooled.random_walk };
-    let mut misfit = fits.map(|f| f.misfit);
-    if let Some(ramp) = drift.ramp.filter(|_| !keep_all) {
-        for ((axis, misfit), fit) in axes.iter_mut().zip(&mut misfit).zip(&ramp.axes) {
-            axis.random_walk = fit.random_walk;
+    let drift = drift::examine(means, whole, tau0_s, first_to_trust(&whole, sampling));
+    let octaves = if keep_all { whole } else { drift.octaves };
+    let mut fits = Fits::new(&octaves, sampling, terms);
+    if drift.slope.is_some() && !keep_all {
+        fits.with_ramp(&octaves, sampling, terms);
+    }
+    let (mut axes, mut pooled_noise) = fits.noise();
+    let mut misfit = fits.axes.map(|f| f.misfit);
+    if !keep_all && (drift.slope.is_some() || fits.has_ramp()) {
+        let (past, pooled) = past_a_ramp(&drift.hadamard, &fits);
+        for ((axis, misfit), fit) in axes.iter_mut().zip(&mut misfit).zip(&past) {
+            (axis.random_walk, axis.bias_instability) = (fit.random_walk, fit.bias_instability);
             *misfit = fit.misfit;
         }
-        pooled_noise.random_walk = ramp.pooled.random_walk;
+        pooled_noise.random_walk = pooled.random_walk;
+        pooled_noise.bias_instability = pooled.bias_instability;
     }
+    let Fits { axes: fits, pooled, contradiction } = fits;
 
     let tau = |octave: &Octave| octave.samples as f64 * tau0_s;
     let deviation = (0..LEVELS)
@@ -88,7 +50,7 @@ pub(super) fn noise(
         .map(|octaves| {
             let mut edf = [0.0; 3];
             for ((edf, octave), fit) in edf.iter_mut().zip(&octaves).zip(&fits) {
-                *edf = fitted_edf(octave, sampling, fit);
+                *edf = fit.degrees(octave, sampling);
             }
             Deviation { tau_s: tau(&octaves[0]), octaves, edf }
         })
@@ -108,7 +70,7 @@ pub(super) fn noise(
         misfit,
         disturbed: Vec::new(),
         warm_up_s: (drift.warm_up > 0).then_some(drift.warm_up as f64 * tau0_s),
-        ramp: drift.ramp.map(|ramp| ramp.slope),
+        ramp: drift.slope,
         checks: Checks::default(),
         signal: Vec::new(),
         deviation,
@@ -133,7 +95,7 @@ impl SensorNoise {
         let read = |axes: &[&[Octave]]| {
             let SlopeReading { noise_density, random_walk } =
                 slope::kalibr_allan(axes, self.tau0_s());
-            AxisNoise { noise_density: reading(noise_density), random_walk: reading(random_walk) }
+            AxisNoise::of_two(reading(noise_density), reading(random_walk))
         };
         let [x, y, z] = &axes;
         let found = axes.each_ref().map(|axis| read(&[axis]));

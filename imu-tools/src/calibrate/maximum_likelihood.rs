@@ -80,7 +80,7 @@ pub fn fit(means: &BlockMeans, tau0_s: f64, shortest_tau_s: f64) -> MaximumLikel
 /// The record says nothing at all.
 const NOTHING: AxisNoise = {
     let p = Parameter::NotObservable { upper90: f64::INFINITY, record_at_least_s: 0.0 };
-    AxisNoise { noise_density: p, random_walk: p }
+    AxisNoise::of_two(p, p)
 };
 
 /// The likelihood of one axis, or of several together.
@@ -208,10 +208,7 @@ impl<'a> Likelihood<'a> {
             .unwrap_or(ends[0]);
         let (from, to) = ((best.x - COARSE).max(low), (best.x + COARSE).min(high));
         let best = self.search(from, to, |point| -point.minimum);
-        AxisNoise {
-            noise_density: self.noise_density(&best, ends),
-            random_walk: self.random_walk(&best, ends),
-        }
+        AxisNoise::of_two(self.noise_density(&best, ends), self.random_walk(&best, ends))
     }
 
     /// The point of low…high where `goal` is largest, by golden section.

@@ -35,6 +35,7 @@ pub mod slope;
 mod stillness;
 mod taken;
 mod temperature;
+mod terms;
 mod usual;
 pub mod verdict;
 mod window;
@@ -43,7 +44,7 @@ pub use checks::Checks;
 pub use envelope::Column;
 pub use temperature::TemperatureRange;
 
-use imu_core::allan::{AllanLadder, Contradiction, Octave, Parameter};
+use imu_core::allan::{AllanLadder, Contradiction, Octave, Parameter, Terms};
 
 use crate::error::Error;
 use crate::recording::{Block, Note, Source, Stream, Summary};
@@ -72,6 +73,8 @@ pub struct Options {
     pub unit_is_given: bool,
     /// How N and K are estimated.
     pub estimator: Estimator,
+    /// What is fitted beside them; [`Estimator::Octaves`] only.
+    pub terms: FittedTerms,
     /// Leave nothing out: neither what was handled nor the warm-up, and read no K past a ramp.
     pub keep_all: bool,
     /// Keep the signal in outline ([`SensorNoise::signal`]), for a picture of it.
@@ -88,6 +91,16 @@ pub enum Estimator {
     MaximumLikelihood,
     /// By the classic slopes ([`slope`]), for comparison: they have no intervals.
     Slope,
+}
+
+/// What is fitted beside N and K.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FittedTerms {
+    /// What the recording asks for ([`imu_core::allan::select_terms`]).
+    #[default]
+    Asked,
+    /// These, whether it asks for them or not.
+    Given(Terms),
 }
 
 /// What a recording says about its IMU.
@@ -189,13 +202,33 @@ pub struct Stretch {
     pub to_s: f64,
 }
 
-/// N and K of one axis, or of all together.
+/// The noise of one axis, or of all together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisNoise {
     /// N: angle or velocity random walk, unit/√Hz.
     pub noise_density: Parameter,
     /// K: random walk of the bias, unit/s/√Hz.
     pub random_walk: Parameter,
+    /// B: bias instability, unit; `None` where it was not asked for.
+    pub bias_instability: Option<Parameter>,
+    /// Q: quantisation of the integral, unit·s; `None` where it was not asked for.
+    pub quantisation: Option<Parameter>,
+    /// |R|: a ramp, unit/s; `None` where it was not asked for.
+    pub rate_ramp: Option<Parameter>,
+}
+
+impl AxisNoise {
+    /// White noise and a random walk, and nothing else.
+    #[must_use]
+    pub const fn of_two(noise_density: Parameter, random_walk: Parameter) -> Self {
+        Self {
+            noise_density,
+            random_walk,
+            bias_instability: None,
+            quantisation: None,
+            rate_ramp: None,
+        }
+    }
 }
 
 /// The Allan deviations at one averaging time.

@@ -110,7 +110,7 @@ impl Pipeline {
         let tau0_s = if stamps.rate_hz > 0.0 { 1.0 / stamps.rate_hz } else { 0.0 };
         let seconds = |samples: u64| samples as f64 * tau0_s;
         let means = &taken.means;
-        let mut noise = fits::noise(kind, stamps, &ladder, means, mean, options.keep_all);
+        let mut noise = fits::noise(kind, stamps, &ladder, means, mean, &options);
         noise.disturbed = disturbed
             .iter()
             .map(|s| Stretch { from_s: seconds(s.from), to_s: seconds(s.to) })

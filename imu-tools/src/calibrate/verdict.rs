@@ -3,7 +3,7 @@
 
 use imu_core::allan::Parameter;
 
-use super::{SensorKind, SensorNoise};
+use super::{AxisNoise, SensorKind, SensorNoise};
 
 /// How well a parameter is known, by half its 90 % interval over its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,6 +92,22 @@ pub fn record_for_walk_s(sensor: &SensorNoise) -> Option<f64> {
     (k > 0.0).then(|| 2.0 * n / (k * 0.1 * 0.1))
 }
 
+/// The random walk to give a filter that has no term for flicker, unit/s/√Hz: the K that makes the bias go as far in
+/// [`Inflation::OVER_S`] as B and K together do, K'²τ/3 = (2 ln 2/π)B² + K²τ/3. `None` where there is no B to cover:
+/// then it is K.
+#[must_use]
+pub fn walk_for_filter(noise: &AxisNoise) -> Option<f64> {
+    let Some(Parameter::Observable { value: flicker, .. }) = noise.bias_instability else {
+        return None;
+    };
+    let walk = match noise.random_walk {
+        Parameter::Observable { value, .. } => value,
+        Parameter::NotObservable { .. } => 0.0,
+    };
+    let flat = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI * flicker * flicker;
+    Some((walk * walk + 3.0 * flat / Inflation::OVER_S).sqrt())
+}
+
 /// How many times the sensor's own noise was seen here beside it, which a filter has to live with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inflation {
@@ -146,6 +162,17 @@ mod tests {
         assert_eq!(Grade::of(Gyroscope, 51.6), Grade::Beyond);
         assert_eq!(Grade::of(Accelerometer, 220.0), Grade::Consumer);
         assert!(Grade::Navigation < Grade::Consumer);
+    }
+
+    /// B = 1, K = 0.1: 0.01 + 3·0.4413/100 = 0.02324.
+    #[test]
+    fn a_walk_that_covers_flicker() {
+        let known = |value| Parameter::Observable { value, sd: 0.0, low90: value, high90: value };
+        let two = AxisNoise::of_two(known(1.0), known(0.1));
+        assert_eq!(walk_for_filter(&two), None);
+        let noise = AxisNoise { bias_instability: Some(known(1.0)), ..two };
+        let walk = walk_for_filter(&noise).unwrap();
+        assert!((walk * walk - 0.023_238_136).abs() < 1e-9, "{walk}");
     }
 
     #[test]

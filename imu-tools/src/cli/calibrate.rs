@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use imu_core::allan::Terms;
 
 use super::reading::{Opened, Reading};
 use super::{progress, same_target};
-use crate::calibrate::{Calibration, Estimator, Options, calibrate};
+use crate::calibrate::{Calibration, Estimator, FittedTerms, Options, calibrate};
 use crate::error::Error;
 use crate::output::Output;
 use crate::report::{self, formats::Form};
@@ -58,6 +59,11 @@ pub(super) struct Calibrate {
     /// How to estimate N and K
     #[arg(long, value_enum, default_value_t = EstimatorName::Octaves)]
     estimator: EstimatorName,
+    /// What to fit: auto (N and K, and of Q, B and R what the recording asks for), or the letters of all
+    /// terms, nk among them: nk, nbk, qnk, nkr ... qnbkr (Q quantisation, N white noise, B bias
+    /// instability, K random walk, R ramp)
+    #[arg(long, value_name = "TERMS", default_value = "auto", value_parser = fitted_terms)]
+    terms: FittedTerms,
     /// Form of imu.yaml, or without -o of what is printed
     #[arg(long, value_enum, value_name = "NAME", conflicts_with = "json")]
     format: Option<FormatName>,
@@ -106,6 +112,26 @@ enum EstimatorName {
     Ml,
     /// The classic reading of slopes -1/2 and +1/2, as kalibr_allan does: to compare
     Slope,
+}
+
+/// `auto`, or a letter for each term.
+fn fitted_terms(text: &str) -> Result<FittedTerms, String> {
+    if text == "auto" {
+        return Ok(FittedTerms::Asked);
+    }
+    let has = |letter: char| text.chars().filter(|c| c.eq_ignore_ascii_case(&letter)).count() == 1;
+    let [quantisation, white, bias_instability, walk, rate_ramp] =
+        ['q', 'n', 'b', 'k', 'r'].map(has);
+    let named = [quantisation, white, bias_instability, walk, rate_ramp];
+    let letters = named.into_iter().filter(|named| *named).count();
+    if !white || !walk || letters != text.chars().count() {
+        return Err(
+            "auto, or each of the letters q n b k r once at most, with n and k among them \
+                    (nk, nbk, qnbkr, ...)"
+                .into(),
+        );
+    }
+    Ok(FittedTerms::Given(Terms { quantisation, bias_instability, rate_ramp }))
 }
 
 impl Calibrate {
@@ -168,7 +194,17 @@ impl Calibrate {
         {
             return Err(Error::usage(format!("--from {from} is not before --to {to}")));
         }
+        let two = FittedTerms::Given(Terms::default());
+        if self.estimator != EstimatorName::Octaves
+            && self.terms != FittedTerms::Asked
+            && self.terms != two
+        {
+            return Err(Error::usage(
+                "--terms is for --estimator octaves: the others know N and K only",
+            ));
+        }
         Ok(Options {
+            terms: self.terms,
             from_s: self.from,
             to_s: self.to,
             unit_is_given: self.reading.accel_unit_is_given(),

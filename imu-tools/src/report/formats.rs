@@ -6,7 +6,8 @@ use std::fmt::Write as _;
 
 use imu_core::allan::Parameter;
 
-use crate::calibrate::{Calibration, SensorKind, SensorNoise};
+use crate::calibrate::verdict::walk_for_filter;
+use crate::calibrate::{AxisNoise, Calibration, SensorKind, SensorNoise};
 
 /// A program's form of the parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,9 +62,18 @@ fn value(parameter: Parameter) -> (f64, &'static str) {
     }
 }
 
-/// N and K of all axes.
+/// N and K of all axes; where there is a bias instability, a walk that covers it, because no program here has a term
+/// for it.
 fn noise(sensor: &SensorNoise) -> [(f64, &'static str); 2] {
-    [value(sensor.pooled.noise_density), value(sensor.pooled.random_walk)]
+    [value(sensor.pooled.noise_density), walk(&sensor.pooled)]
+}
+
+/// A random walk for a filter.
+fn walk(noise: &AxisNoise) -> (f64, &'static str) {
+    match walk_for_filter(noise) {
+        Some(walk) => (walk, "  covers the bias instability too"),
+        None => value(noise.random_walk),
+    }
 }
 
 impl Sensors<'_> {
@@ -165,7 +175,7 @@ impl Sensors<'_> {
             "%YAML:1.0\n---\n\
              # As imu_utils writes it. _n: white noise of one sample, N sqrt(rate), for this rate only.\n\
              # _w is NOT a random walk, although it is named like one: it is the lowest Allan deviation,\n\
-             # sqrt(2 N K/sqrt(3)). Who wants the random walk K takes --format vins, kalibr or orbslam3.\n\
+             # sqrt(2 N K/sqrt(3)) without flicker. Who wants the random walk K takes --format vins, kalibr or orbslam3.\n\
              type: IMU\nname: imu\n",
         );
         for sensor in [self.gyroscope, self.accelerometer].into_iter().flatten() {
@@ -180,8 +190,14 @@ impl Sensors<'_> {
             {
                 let ((n, n_remark), (k, k_remark)) =
                     (value(axis.noise_density), value(axis.random_walk));
-                let (white, least) =
-                    (n * sensor.stamps.rate_hz.sqrt(), (2.0 * n * k / 3_f64.sqrt()).sqrt());
+                let white = n * sensor.stamps.rate_hz.sqrt();
+                // The flat of B is under all of the curve of N and K.
+                let b = axis.bias_instability.map_or(0.0, |b| match b {
+                    Parameter::Observable { value, .. } => value,
+                    Parameter::NotObservable { .. } => 0.0,
+                });
+                let flat = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI * b * b;
+                let least = (2.0 * n * k / 3_f64.sqrt() + flat).sqrt();
                 let comment = |remark: &str| match remark {
                     "" => String::new(),
                     remark => format!("  #{remark}"),

@@ -2,7 +2,7 @@
 //!
 //! A parameter is `{"observable":true,"value","sd","low90","high90","unit"}`, or where the record
 //! cannot show it `{"observable":false,"upper90","record_at_least_s","unit"}`; a sensor that the
-//! recording does not have, and a number that is not known, are `null`.
+//! recording does not have, a term that it did not ask for, and a number that is not known, are `null`.
 
 use imu_core::allan::Parameter;
 use serde_json::{Value, json};
@@ -102,7 +102,15 @@ fn noise(noise: &AxisNoise, kind: SensorKind) -> Value {
     json!({
         "noise_density": parameter(noise.noise_density, Quantity::NoiseDensity(kind)),
         "random_walk": parameter(noise.random_walk, Quantity::RandomWalk(kind)),
+        "bias_instability": asked(noise.bias_instability, Quantity::BiasInstability(kind)),
+        "quantisation": asked(noise.quantisation, Quantity::Quantisation(kind)),
+        "rate_ramp": asked(noise.rate_ramp, Quantity::RateRamp(kind)),
     })
+}
+
+/// A parameter that is `null` where the record did not ask for it.
+fn asked(asked: Option<Parameter>, quantity: Quantity) -> Value {
+    asked.map_or(Value::Null, |found| parameter(found, quantity))
 }
 
 fn parameter(parameter: Parameter, quantity: Quantity) -> Value {

@@ -9,8 +9,8 @@ use super::json::AXES;
 use crate::calibrate::{AxisNoise, Calibration, SensorNoise};
 use crate::scene::display_duration;
 
-/// What was recorded, then N and K of every axis and of all together, each with its 90 % interval
-/// and its datasheet twin.
+/// What was recorded, then N and K, and what else was fitted, of every axis and of all together, each with its
+/// 90 % interval and its datasheet twin.
 #[must_use]
 pub fn calibration(calibration: &Calibration) -> String {
     let mut text = String::new();
@@ -39,15 +39,16 @@ fn sensor(text: &mut String, sensor: &SensorNoise) {
     if let Some((first, last)) = sensor.tau_used_s {
         let _ = writeln!(text, "  averaging times used: {} to {} s", short(first), short(last));
     }
-    block(text, sensor, Quantity::NoiseDensity(sensor.kind), |axis| axis.noise_density);
-    block(text, sensor, Quantity::RandomWalk(sensor.kind), |axis| axis.random_walk);
+    for (quantity, of) in Quantity::fitted(sensor) {
+        block(text, sensor, quantity, of);
+    }
 }
 
 fn block(
     text: &mut String,
     sensor: &SensorNoise,
     quantity: Quantity,
-    of: impl Fn(&AxisNoise) -> Parameter,
+    of: impl Fn(&AxisNoise) -> Option<Parameter>,
 ) {
     let twin = quantity.twin();
     let _ = writeln!(
@@ -59,7 +60,11 @@ fn block(
     );
     let rows = AXES.iter().zip(&sensor.axes).chain([(&"all axes", &sensor.pooled)]);
     for (name, axis) in rows {
-        let _ = match of(axis) {
+        let Some(parameter) = of(axis) else {
+            let _ = writeln!(text, "    {name:<26}the record does not ask for it");
+            continue;
+        };
+        let _ = match parameter {
             Parameter::NotObservable { upper90, .. } if upper90.is_infinite() => {
                 writeln!(text, "    {name:<26}not observable: nothing is known of it")
             }

@@ -1,6 +1,8 @@
 //! Units of the noise parameters, and what datasheets call them.
 
-use crate::calibrate::SensorKind;
+use imu_core::allan::Parameter;
+
+use crate::calibrate::{AxisNoise, SensorKind, SensorNoise};
 
 /// A noise parameter of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,6 +11,12 @@ pub enum Quantity {
     NoiseDensity(SensorKind),
     /// K: random walk of the bias.
     RandomWalk(SensorKind),
+    /// B: flicker.
+    BiasInstability(SensorKind),
+    /// Q: quantisation of the integral.
+    Quantisation(SensorKind),
+    /// R: a steady drift.
+    RateRamp(SensorKind),
 }
 
 /// The unit that datasheets use, and the factor to it from SI.
@@ -24,6 +32,27 @@ const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 const MICRO_G: f64 = 1e6 / 9.806_65;
 
 impl Quantity {
+    /// All parameters of a sensor, and where they stand in the noise of an axis; `None` for what was not asked for.
+    #[must_use]
+    pub fn all(kind: SensorKind) -> [(Self, fn(&AxisNoise) -> Option<Parameter>); 5] {
+        [
+            (Self::NoiseDensity(kind), |axis| Some(axis.noise_density)),
+            (Self::RandomWalk(kind), |axis| Some(axis.random_walk)),
+            (Self::BiasInstability(kind), |axis| axis.bias_instability),
+            (Self::Quantisation(kind), |axis| axis.quantisation),
+            (Self::RateRamp(kind), |axis| axis.rate_ramp),
+        ]
+    }
+
+    /// Those of them that some axis of a sensor, or all axes together, have.
+    pub fn fitted(
+        sensor: &SensorNoise,
+    ) -> impl Iterator<Item = (Self, fn(&AxisNoise) -> Option<Parameter>)> {
+        Self::all(sensor.kind).into_iter().filter(|(_, of)| {
+            sensor.axes.iter().chain([&sensor.pooled]).any(|axis| of(axis).is_some())
+        })
+    }
+
     /// What it is called, with its letter.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -32,10 +61,15 @@ impl Quantity {
             Self::NoiseDensity(SensorKind::Accelerometer) => "velocity random walk N",
             Self::RandomWalk(SensorKind::Gyroscope) => "rate random walk K",
             Self::RandomWalk(SensorKind::Accelerometer) => "acceleration random walk K",
+            Self::BiasInstability(_) => "bias instability B",
+            Self::Quantisation(SensorKind::Gyroscope) => "angle quantisation Q",
+            Self::Quantisation(SensorKind::Accelerometer) => "velocity quantisation Q",
+            Self::RateRamp(SensorKind::Gyroscope) => "rate ramp R",
+            Self::RateRamp(SensorKind::Accelerometer) => "acceleration ramp R",
         }
     }
 
-    /// Its SI unit, as a continuous-time density.
+    /// Its SI unit; of N and K that of a continuous-time density.
     #[must_use]
     pub const fn unit(self) -> &'static str {
         match self {
@@ -43,6 +77,11 @@ impl Quantity {
             Self::NoiseDensity(SensorKind::Accelerometer) => "m/s²/√Hz",
             Self::RandomWalk(SensorKind::Gyroscope) => "rad/s²/√Hz",
             Self::RandomWalk(SensorKind::Accelerometer) => "m/s³/√Hz",
+            Self::BiasInstability(kind) => kind.unit(),
+            Self::Quantisation(SensorKind::Gyroscope) => "rad",
+            Self::Quantisation(SensorKind::Accelerometer) => "m/s",
+            Self::RateRamp(SensorKind::Gyroscope) => "rad/s²",
+            Self::RateRamp(SensorKind::Accelerometer) => "m/s³",
         }
     }
 
@@ -61,6 +100,22 @@ impl Quantity {
             }
             Self::RandomWalk(SensorKind::Accelerometer) => {
                 Twin { unit: "µg/√h", per_si: MICRO_G * 60.0 }
+            }
+            Self::BiasInstability(SensorKind::Gyroscope) => {
+                Twin { unit: "°/h", per_si: DEGREES * 3600.0 }
+            }
+            Self::BiasInstability(SensorKind::Accelerometer) => {
+                Twin { unit: "µg", per_si: MICRO_G }
+            }
+            Self::Quantisation(SensorKind::Gyroscope) => {
+                Twin { unit: "arcsec", per_si: DEGREES * 3600.0 }
+            }
+            Self::Quantisation(SensorKind::Accelerometer) => Twin { unit: "mm/s", per_si: 1000.0 },
+            Self::RateRamp(SensorKind::Gyroscope) => {
+                Twin { unit: "°/h/h", per_si: DEGREES * 3600.0 * 3600.0 }
+            }
+            Self::RateRamp(SensorKind::Accelerometer) => {
+                Twin { unit: "µg/h", per_si: MICRO_G * 3600.0 }
             }
         }
     }
@@ -81,5 +136,12 @@ mod tests {
         let walk = Quantity::RandomWalk(SensorKind::Gyroscope).twin();
         let k = 1.0 / walk.per_si;
         assert!((k * 60.0 - (1.0_f64 / 3600.0).to_radians()).abs() < 1e-18);
+        // A ramp of 1 °/h/h changes the rate by 1 °/h in an hour; B is a rate, Q an angle of 1/3600 °.
+        let of = |quantity: Quantity| 1.0 / quantity.twin().per_si;
+        let hourly = (1.0_f64 / 3600.0).to_radians() / 3600.0;
+        let kind = SensorKind::Gyroscope;
+        assert!((of(Quantity::RateRamp(kind)) * 3600.0 - hourly).abs() < 1e-18);
+        assert!((of(Quantity::BiasInstability(kind)) - hourly).abs() < 1e-18);
+        assert!((of(Quantity::Quantisation(kind)) - hourly * 3600.0).abs() < 1e-15);
     }
 }

@@ -6,10 +6,12 @@ use imu_core::allan::Parameter;
 
 use super::Quantity;
 use super::table::short;
+use crate::calibrate::verdict::{Inflation, walk_for_filter};
 use crate::calibrate::{Calibration, SensorKind, SensorNoise};
 
 /// The file, all axes of a sensor pooled. A parameter that the record cannot show has its upper
-/// 90 % bound for a value (Kalibr wants a number above zero), and says so.
+/// 90 % bound for a value (Kalibr wants a number above zero), and says so; where there is a bias instability, the
+/// random walk covers it ([`walk_for_filter`]), because Kalibr has no term for it.
 #[must_use]
 pub fn kalibr(calibration: &Calibration) -> String {
     let mut text = format!(
@@ -54,6 +56,18 @@ fn lines(text: &mut String, kind: SensorKind, sensor: &SensorNoise) {
         ("random_walk", Quantity::RandomWalk(kind), pooled.random_walk),
     ] {
         let (unit, twin) = (quantity.unit(), quantity.twin());
+        if key == "random_walk"
+            && let Some(walk) = walk_for_filter(pooled)
+        {
+            let _ = writeln!(
+                text,
+                "{name}_{key}: {walk:.6e}  # {unit}; covers bias instability too, which Kalibr has no \
+                 term for: as far in {:.0} s as B and K below go together",
+                Inflation::OVER_S
+            );
+            let _ = writeln!(text, "# {name} {}: {}", quantity.name(), known(quantity, parameter));
+            continue;
+        }
         let line = match parameter {
             Parameter::Observable { value, high90, .. } if high90.is_infinite() => {
                 format!("{name}_{key}: {value:.6e}  # {unit}, a reading without an interval")
@@ -75,6 +89,28 @@ fn lines(text: &mut String, kind: SensorKind, sensor: &SensorNoise) {
         };
         text.push_str(&line);
         text.push('\n');
+    }
+    // What Kalibr has no key for.
+    for (quantity, of) in Quantity::all(kind).into_iter().skip(2) {
+        if let Some(parameter) = of(pooled) {
+            let _ = writeln!(text, "# {name} {}: {}", quantity.name(), known(quantity, parameter));
+        }
+    }
+}
+
+/// A parameter in a comment: value, interval, units.
+fn known(quantity: Quantity, parameter: Parameter) -> String {
+    let (unit, twin) = (quantity.unit(), quantity.twin());
+    match parameter {
+        Parameter::Observable { value, low90, high90, .. } => format!(
+            "{value:.3e} {unit} ({low90:.3e} to {high90:.3e}); {} {}",
+            short(value * twin.per_si),
+            twin.unit
+        ),
+        Parameter::NotObservable { upper90, .. } if upper90.is_finite() => {
+            format!("not observable, below {upper90:.3e} {unit}")
+        }
+        Parameter::NotObservable { .. } => "nothing is known of it".into(),
     }
 }
 

@@ -26,7 +26,7 @@ use super::json::AXES;
 use super::plot::{self, Figure, font_base64};
 use super::table::{duration, short};
 use super::{Quantity, Twin};
-use crate::calibrate::{AxisNoise, Calibration, SensorNoise};
+use crate::calibrate::{Calibration, SensorNoise};
 
 /// Colours of the page and of the pictures in it.
 const STYLE: &str = include_str!("../../../assets/report.css");
@@ -100,18 +100,17 @@ fn warnings(calibration: &Calibration) -> Markup {
     }
 }
 
-/// N and K of a sensor, by axis and all together.
+/// The terms of a sensor, by axis and all together.
 fn numbers(sensor: &SensorNoise) -> Markup {
     let kind = sensor.kind;
     html! {
         h2 { (words::capital(kind.name())) }
         p { (words::sampling(sensor)) }
-        @for (quantity, of) in [
-            (Quantity::NoiseDensity(kind), (|a| a.noise_density) as fn(&AxisNoise) -> Parameter),
-            (Quantity::RandomWalk(kind), |a| a.random_walk),
-        ] {
+        @for (quantity, of) in Quantity::fitted(sensor) {
             h3 { (words::capital(quantity.name())) }
-            p { (words::meaning(quantity, of(&sensor.pooled))) }
+            @if let Some(pooled) = of(&sensor.pooled) {
+                p { (words::meaning(quantity, pooled, &sensor.pooled)) }
+            }
             div.wide {
                 table {
                     thead {
@@ -124,9 +123,14 @@ fn numbers(sensor: &SensorNoise) -> Markup {
                     }
                     tbody {
                         @for (name, axis) in AXES.iter().zip(&sensor.axes) {
-                            (row(name, of(axis), quantity.twin()))
+                            @if let Some(found) = of(axis) { (row(name, found, quantity.twin())) }
+                            @else { tr { td { (name) } td { "not asked for" } td {} td {} } }
                         }
-                        (row("all", of(&sensor.pooled), quantity.twin()))
+                        @if let Some(found) = of(&sensor.pooled) {
+                            (row("all", found, quantity.twin()))
+                        } @else {
+                            tr.all { td { "all" } td { "not asked for" } td {} td {} }
+                        }
                     }
                 }
             }

@@ -3,20 +3,21 @@
 use imu_core::allan::Parameter;
 
 use super::span;
-use crate::calibrate::verdict::{Grade, Inflation, Known, record_for_walk_s};
-use crate::calibrate::{Calibration, SensorKind, SensorNoise};
+use crate::calibrate::verdict::{Grade, Inflation, Known, record_for_walk_s, walk_for_filter};
+use crate::calibrate::{AxisNoise, Calibration, SensorKind, SensorNoise};
 use crate::report::Quantity;
 use crate::report::table::short;
 
 pub(super) const ALLAN: &str = "Average the signal over blocks of τ seconds: the Allan deviation is how much neighbouring blocks \
      differ. On the left it falls, as white noise averages out (slope −½); on the right it rises, as \
      the bias walks away (slope +½). Dots are measured, bands are their 90 % intervals, the thick \
-     line is the fit, dashed lines are its two parts. Circles: N is the dashed line of white noise \
-     read at 1 s, K that of the random walk read at 3 s, and the third is the lowest point of the \
+     line is the fit, dashed lines are its terms. Circles: N is the dashed line of white noise \
+     read at 1 s, K that of the random walk read at 3 s, and one is the lowest point of the \
      fit, often called bias instability: averaging longer than that makes a bias worse, not better. \
+     (The B of a fit is 1/0.664 of a flat that white noise and walk do not explain.) \
      Grey averaging times decided nothing.";
 
-pub(super) const RESIDUAL: &str = "Measured over fitted: where the bars (90 % intervals) touch 1, white noise and a random walk \
+pub(super) const RESIDUAL: &str = "Measured over fitted: where the bars (90 % intervals) touch 1, the fitted terms \
      explain the sensor. Of ten bars one may miss it by chance. Below 1 on the left: a low-pass \
      filter. Above 1 in the middle or on the right: bias instability, drift, temperature or motion.";
 
@@ -58,7 +59,7 @@ pub(super) fn sampling(sensor: &SensorNoise) -> String {
 }
 
 /// What the number means, in the sensor's terms.
-pub(super) fn meaning(quantity: Quantity, pooled: Parameter) -> String {
+pub(super) fn meaning(quantity: Quantity, pooled: Parameter, noise: &AxisNoise) -> String {
     let value = match pooled {
         Parameter::Observable { value, .. } => value,
         Parameter::NotObservable { upper90, .. } if upper90.is_finite() => upper90,
@@ -66,7 +67,36 @@ pub(super) fn meaning(quantity: Quantity, pooled: Parameter) -> String {
             return "Too little was recorded to say anything of it.".into();
         }
     };
+    let walk = |text: String| match walk_for_filter(noise) {
+        Some(walk) => format!(
+            "{text} This is K beside B: the part of the wandering that grows as the root of time. For a \
+             filter that knows N and K only put {} {}, which goes as far in {:.0} s as both together.",
+            short(walk),
+            quantity.unit(),
+            Inflation::OVER_S
+        ),
+        None => text,
+    };
     match quantity {
+        Quantity::BiasInstability(kind) => format!(
+            "Flicker: the deviation of the bias stays at {} {} however long one averages. Beside it K is \
+             known less well (by a third where there is little of it), and a K without it would \
+             stand for both.",
+            short(value * (2.0 * std::f64::consts::LN_2 / std::f64::consts::PI).sqrt()),
+            kind.unit()
+        ),
+        Quantity::Quantisation(_) => format!(
+            "The sensor counts its integral in steps of {} {} (√12 Q). Errors of neighbouring samples \
+             cancel: it is no white noise, and integration does not see it grow.",
+            short(value * 12_f64.sqrt()),
+            quantity.unit()
+        ),
+        Quantity::RateRamp(kind) => format!(
+            "A steady drift, {} {} in an hour, of either sign. K is read past it, from the Hadamard \
+             variance.",
+            short(value * 3600.0),
+            kind.unit()
+        ),
         Quantity::NoiseDensity(SensorKind::Gyroscope) => format!(
             "White noise of the angular rate. Integrated over an hour it turns the attitude by \
              {} ° (one standard deviation), and by {} ° in a minute.",
@@ -78,18 +108,18 @@ pub(super) fn meaning(quantity: Quantity, pooled: Parameter) -> String {
              {} m/s (one standard deviation).",
             short(value * 60_f64.sqrt())
         ),
-        Quantity::RandomWalk(SensorKind::Gyroscope) => format!(
+        Quantity::RandomWalk(SensorKind::Gyroscope) => walk(format!(
             "How the bias wanders: by {} °/s in a minute and {} °/s in an hour (one standard \
              deviation).",
             short((value * 60_f64.sqrt()).to_degrees()),
             short((value * 60.0).to_degrees())
-        ),
-        Quantity::RandomWalk(SensorKind::Accelerometer) => format!(
+        )),
+        Quantity::RandomWalk(SensorKind::Accelerometer) => walk(format!(
             "How the bias wanders: by {} m/s² in a minute and {} m/s² in an hour (one standard \
              deviation).",
             short(value * 60_f64.sqrt()),
             short(value * 60.0)
-        ),
+        )),
     }
 }
 
@@ -121,7 +151,7 @@ pub(super) fn verdict(sensor: &SensorNoise) -> String {
         Known::NotAtAll => "Nothing is known of the walk of the bias: record longer.".into(),
     };
     let beyond = if sensor.misfit.contains(&true) {
-        " There is more in the signal than these two: take K for an upper limit."
+        " There is more in the signal than what was fitted: take K for an upper limit."
     } else {
         ""
     };
@@ -172,6 +202,14 @@ pub(super) fn inflation(sensors: &[&SensorNoise]) -> Vec<String> {
                  does: multiply K by that, or estimate the drift.",
                 short(random_walk),
                 Inflation::OVER_S
+            ));
+        }
+        if let Some(walk) = walk_for_filter(&sensor.pooled) {
+            sentences.push(format!(
+                "{name}: flicker (bias instability), which the filters above have no term for: the random \
+                 walk that stands there for them is {} {}, in the place of K.",
+                short(walk),
+                Quantity::RandomWalk(sensor.kind).unit()
             ));
         }
         if let Some(warm_up_s) = sensor.warm_up_s {

@@ -7,7 +7,7 @@ use super::chart::Chart;
 use super::scale::Scale;
 use super::svg::Shapes;
 use super::{AXES, Figure, WIDTH};
-use crate::calibrate::{Calibration, SensorKind, SensorNoise};
+use crate::calibrate::{AxisNoise, Calibration, SensorKind, SensorNoise};
 use crate::report::Quantity;
 use crate::report::table::short;
 
@@ -38,9 +38,48 @@ pub(super) fn estimate(parameter: Parameter) -> f64 {
     }
 }
 
-/// The deviation at τ of white noise N, a random walk K and a drift R (IEEE Std 952, annex C).
-pub(super) fn model(n: f64, k: f64, ramp: f64, tau: f64) -> f64 {
-    (n * n / tau + k * k * tau / 3.0 + 0.5 * (ramp * tau).powi(2)).sqrt()
+/// The terms of a fit as numbers; 0 for what there is not.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Curve {
+    q: f64,
+    n: f64,
+    b: f64,
+    k: f64,
+    r: f64,
+}
+
+impl Curve {
+    /// The estimates of an axis; `ramp` is the drift that was measured where none was fitted.
+    pub(super) fn of(noise: &AxisNoise, ramp: f64) -> Self {
+        let asked = |parameter: Option<Parameter>| parameter.map(estimate);
+        Self {
+            q: asked(noise.quantisation).unwrap_or(0.0),
+            n: estimate(noise.noise_density),
+            b: asked(noise.bias_instability).unwrap_or(0.0),
+            k: estimate(noise.random_walk),
+            r: asked(noise.rate_ramp).unwrap_or(ramp),
+        }
+    }
+
+    /// The deviation at τ (IEEE Std 952, annex C).
+    pub(super) fn at(&self, tau: f64) -> f64 {
+        let Self { q, n, b, k, r } = *self;
+        let quantisation = 3.0 * (q / tau).powi(2);
+        let flat = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI * b * b;
+        (quantisation + n * n / tau + flat + k * k * tau / 3.0 + 0.5 * (r * tau).powi(2)).sqrt()
+    }
+
+    /// Each term by itself.
+    fn terms(&self) -> [Self; 5] {
+        let none = Self::default();
+        [
+            Self { q: self.q, ..none },
+            Self { n: self.n, ..none },
+            Self { b: self.b, ..none },
+            Self { k: self.k, ..none },
+            Self { r: self.r, ..none },
+        ]
+    }
 }
 
 fn chart(sensor: &SensorNoise, top: f64) -> Shapes {
@@ -93,7 +132,7 @@ fn chart(sensor: &SensorNoise, top: f64) -> Shapes {
         ("line y", "y"),
         ("line z", "z"),
         ("line fit", "fit"),
-        ("line term", "N, K"),
+        ("line term", "terms"),
     ] {
         chart.name(class, name);
     }
@@ -106,22 +145,24 @@ fn chart(sensor: &SensorNoise, top: f64) -> Shapes {
     chart.finish(&id, &title, "averaging time τ, s", &format!("Allan deviation, {unit}"))
 }
 
-/// The fit of all axes, its terms, and where N, K and the minimum are read.
+/// The fit of all axes, its terms, and where they and the minimum are read.
 fn fitted(chart: &mut Chart, sensor: &SensorNoise, (first, last): (f64, f64)) {
-    let (n, k) = (estimate(sensor.pooled.noise_density), estimate(sensor.pooled.random_walk));
     let ramp = sensor.ramp.map_or(0.0, |r| (r.iter().map(|r| r * r).sum::<f64>() / 3.0).sqrt());
+    let fit = Curve::of(&sensor.pooled, ramp);
     let step = (last / first).powf(1.0 / CURVE as f64);
-    let curve = |n: f64, k: f64, ramp: f64| -> Vec<(f64, f64)> {
+    let points = |curve: &Curve| -> Vec<(f64, f64)> {
         (0..=CURVE)
             .map(|i| first * step.powi(i as i32))
-            .map(|tau| (tau, model(n, k, ramp, tau)))
+            .map(|tau| (tau, curve.at(tau)))
             .filter(|(_, y)| *y > 0.0)
             .collect()
     };
-    chart.line("line term", &curve(n, 0.0, 0.0));
-    chart.line("line term", &curve(0.0, k, 0.0));
-    chart.line("line fit", &curve(n, k, ramp));
+    for term in fit.terms() {
+        chart.line("line term", &points(&term));
+    }
+    chart.line("line fit", &points(&fit));
     let kind = sensor.kind;
+    let Curve { q, n, b, k, r } = fit;
     if n > 0.0 {
         let unit = Quantity::NoiseDensity(kind).unit();
         chart.mark("mark", (1.0, n), false, &format!("N = {} {unit}, at 1 s", short(n)));
@@ -130,10 +171,32 @@ fn fitted(chart: &mut Chart, sensor: &SensorNoise, (first, last): (f64, f64)) {
         let unit = Quantity::RandomWalk(kind).unit();
         chart.mark("mark", (3.0, k), false, &format!("K = {} {unit}, at 3 s", short(k)));
     }
-    if n > 0.0 && k > 0.0 {
+    if q > 0.0 {
+        let unit = Quantity::Quantisation(kind).unit();
+        let text = format!("Q = {} {unit}, at √3 s", short(q));
+        chart.mark("mark", (3_f64.sqrt(), q), false, &text);
+    }
+    if r > 0.0 && sensor.pooled.rate_ramp.is_some() {
+        let unit = Quantity::RateRamp(kind).unit();
+        let text = format!("R = {} {unit}, at √2 s", short(r));
+        chart.mark("mark", (2_f64.sqrt(), r), false, &text);
+    }
+    // The least of the curve: that of N and K is at √3 N/K; of others it is looked for.
+    let least = if q == 0.0 && b == 0.0 && n > 0.0 && k > 0.0 {
+        let two = Curve { r: 0.0, ..fit };
         let tau = 3_f64.sqrt() * n / k;
-        let least = model(n, k, 0.0, tau);
-        let text = format!("least: {} {} at {} s", short(least), kind.unit(), short(tau));
+        Some((tau, two.at(tau)))
+    } else {
+        points(&fit).into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| b > 0.0)
+    };
+    if let Some((tau, least)) = least {
+        let unit = kind.unit();
+        let text = format!("least: {} {unit} at {} s", short(least), short(tau));
         chart.mark("mark", (tau, least), true, &text);
+    }
+    if b > 0.0 {
+        let (tau, flat) = ((first * last).sqrt(), Curve { b, ..Curve::default() }.at(1.0));
+        let text = format!("0.664 B, B = {} {}", short(b), kind.unit());
+        chart.mark("mark", (tau, flat), false, &text);
     }
 }

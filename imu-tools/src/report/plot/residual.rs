@@ -1,8 +1,8 @@
-//! What the fit leaves: each deviation over what N and K say it should be.
+//! What the fit leaves: each deviation over what the fitted terms say it should be.
 
 use imu_core::allan::interval;
 
-use super::allan::{estimate, model};
+use super::allan::Curve;
 use super::chart::Chart;
 use super::scale::Scale;
 use super::svg::Shapes;
@@ -27,11 +27,9 @@ fn chart(sensor: &SensorNoise, top: f64) -> Shapes {
     let x = Scale::decades(sensor.deviation.iter().map(|d| d.tau_s));
     let mut rows: [Vec<(f64, f64, f64, f64)>; 3] = Default::default();
     for (axis, rows) in rows.iter_mut().enumerate() {
-        let noise = sensor.axes[axis];
-        let (n, k) = (estimate(noise.noise_density), estimate(noise.random_walk));
-        let ramp = sensor.ramp.map_or(0.0, |ramp| ramp[axis]);
+        let fit = Curve::of(&sensor.axes[axis], sensor.ramp.map_or(0.0, |ramp| ramp[axis]));
         for d in sensor.deviation.iter().filter(|d| d.octaves[axis].variance > 0.0) {
-            let expected = model(n, k, ramp, d.tau_s);
+            let expected = fit.at(d.tau_s);
             if expected > 0.0 {
                 let (low, high) = interval(d.octaves[axis].variance, d.edf[axis], 0.9);
                 let [value, low, high] =

@@ -18,6 +18,7 @@ mod noise;
 mod scalar;
 mod sensor;
 pub mod single;
+mod term_fit;
 mod terms;
 mod trajectory;
 
@@ -92,6 +93,8 @@ pub const CASES: &[Case] = &[
     Case { name: "Hadamard f64 4 cost", run: ladder::cost::<f64, 4, 2> },
     Case { name: "fit", run: fit::bits },
     Case { name: "fit cost", run: fit::cost },
+    Case { name: "term fit", run: term_fit::bits },
+    Case { name: "term fit cost", run: term_fit::cost },
     Case { name: "Allan f32 1 worst", run: ladder::worst_push },
 ];
 
