@@ -24,6 +24,7 @@ const KNOWN: u64 = 64;
 pub(super) fn warnings(sensor: &SensorNoise, keep_all: bool) -> Vec<String> {
     let mut sentences = Vec::new();
     of_rest(&mut sentences, sensor, keep_all);
+    of_small_ramp(&mut sentences, sensor, keep_all);
     of_noise(&mut sentences, sensor);
     of_values(&mut sentences, sensor);
     of_stamps(&mut sentences, &sensor.stamps);
@@ -81,6 +82,20 @@ fn of_rest(to: &mut Vec<String>, sensor: &SensorNoise, keep_all: bool) {
         to.push(format!(
             "drifts over all of the record by {hourly} {unit} an hour (x, y, z), as temperature makes \
              it do: {what}"
+        ));
+    }
+}
+
+/// A ramp too small to be seen in the way of the mean, but not in the long averaging times.
+fn of_small_ramp(to: &mut Vec<String>, sensor: &SensorNoise, keep_all: bool) {
+    if let (None, Some(Parameter::Observable { value, .. })) =
+        (sensor.ramp, sensor.pooled.rate_ramp)
+    {
+        let past = if keep_all { "beside it" } else { "past it, from the Hadamard variance" };
+        to.push(format!(
+            "the long averaging times ask for a ramp, of {:.2e} {} an hour: K is read {past}",
+            value * 3600.0,
+            sensor.kind.unit()
         ));
     }
 }
