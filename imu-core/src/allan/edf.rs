@@ -18,7 +18,7 @@
 //! the sum stops at 8 blocks, which makes the result at most 2e-4 of itself too large (the tail is
 //! −0.361/x², Allan, and falls as 1/x⁴, Hadamard). Strides finer than m/512 are summed on a coarser
 //! grid, off by at most 2e-5. So there are at most 4096 terms, whatever M is. At strides m, m/2 and
-//! m/4 without flicker there are none: the sum is a quadratic form in the two shares, whose
+//! m/4 without flicker, from 8 differences on (Hadamard 12), there are none: the sum is a quadratic form in the two shares, whose
 //! coefficients are worked out by the compiler.
 //!
 //! ```

@@ -1,8 +1,8 @@
 //! A recording of any length as at most 2¹⁶ means of blocks: what maximum likelihood works on.
 //!
-//! White noise and a slow random walk lose nothing when samples are averaged over blocks far
-//! shorter than N/K. Blocks begin with one sample; whenever 2¹⁶ are full, neighbours are merged, so
-//! that memory stays at 2 MB however long the recording is. A block keeps the number of samples
+//! A slow random walk loses nothing when samples are averaged over blocks far shorter than N/K (white noise
+//! does: as many blocks as there are tell of it, and no more). Blocks begin with one sample; whenever 2¹⁶
+//! are full, neighbours are merged, so that memory stays at 2 MB however long the recording is. A block keeps the number of samples
 //! that were there, and a hole is blocks with none: time goes on in it.
 //!
 //! A sample that is not finite counts as missing.
@@ -298,6 +298,31 @@ mod tests {
         collected.missing(u64::MAX);
         collected.extend(&[row(2)]);
         assert!(collected.blocks() <= MOST);
+    }
+
+    /// Sums of a few thousand integers and halves, relative to an integer, are exact.
+    #[test]
+    fn the_mean_of_a_record_is_of_all_its_samples() {
+        let mut collected = BlockMeans::new();
+        assert_eq!(collected.record_mean(), ([0.0; 3], 0));
+        for (reference, first) in [([0.0; 3], 0), ([1e6, -1e6, 9.0], 7)] {
+            collected.next_record(reference);
+            assert_eq!(collected.record_mean(), (reference, 0));
+            let rows: Vec<_> =
+                (first..first + 101).map(|k| [0, 1, 2].map(|i| reference[i] + row(k)[i])).collect();
+            // What a restart drops, what a hole leaves out and what is no number: the first two do not
+            // change the mean.
+            collected.extend(&rows[..30]);
+            collected.restart();
+            collected.extend(&rows[30..50]);
+            collected.missing(1000);
+            collected.extend(&[[f64::NAN; 3]]);
+            collected.extend(&rows[50..]);
+            // k·37 mod 101 takes each value 0…100 once.
+            let expected = [50.0, 93.0, 28.0];
+            let (mean, samples) = collected.record_mean();
+            assert_eq!((mean, samples), ([0, 1, 2].map(|i| reference[i] + expected[i]), 101));
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Exact Gaussian maximum likelihood of white noise N and random walk K on block means.
 //!
 //! The benchmark that the fit to octaves is measured against (`--estimator ml`): no estimator of
-//! this model does better on a long record. The likelihood is computed by a Kalman filter (Kalman
+//! this model knows K better on a long record. The likelihood is computed by a Kalman filter (Kalman
 //! 1960; Schweppe 1965, *Evaluation of likelihood functions for Gaussian signals*) with one state,
 //! the bias, unknown at first. It is that of the differences of block means, whose covariance is
 //! tridiagonal for a record without holes, and stays exact with whole blocks missing, for

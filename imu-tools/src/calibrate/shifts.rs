@@ -31,7 +31,7 @@ const PEAK: usize = 8;
 const BLOCKS: usize = 512;
 /// Differences of those that show it at least.
 const FEWEST: usize = 8;
-/// The usual is learnt anew after one of so many of those that are there.
+/// The usual is learnt anew when there are new ones, one for so many that are kept.
 const RELEARN: usize = 8;
 /// Median of the absolute value of a standard normal quantity, and the error of one that was learnt
 /// from n values, relative, over 1/√n.
@@ -98,36 +98,8 @@ impl Shifts {
     /// Learns what is usual.
     pub(super) fn learn(&mut self, step: [f64; 3]) {
         self.new = 0;
-        self.blocks.make_contiguous();
-        self.spreads = [self.spread(SHORT, step), self.spread(LONG, step)];
-    }
-
-    fn spread(&self, windows: usize, step: [f64; 3]) -> Option<Spread> {
-        let many = windows / SHORT;
-        // One block between them is more than a transition.
-        let span = 2 * many + 1;
-        let pairs = || {
-            let spans = self.blocks.as_slices().0.windows(span);
-            spans.filter(|span| span.first().map(|b| b.1) == span.last().map(|b| b.1))
-        };
-        let count = pairs().count();
-        if count < FEWEST * many {
-            return None;
-        }
-        let unsure = 1.0 + 2.0 * ERROR_OF_MEDIAN / (count as f64 / many as f64).sqrt();
-        let axes = [0, 1, 2].map(|axis| {
-            let sum =
-                |blocks: &[([f64; 3], u64)]| blocks.iter().map(|block| block.0[axis]).sum::<f64>();
-            let way = |span: &[([f64; 3], u64)]| {
-                let (before, after) = span.split_at(many);
-                (sum(after.get(1..).unwrap_or_default()) - sum(before)).abs() / many as f64
-            };
-            let mut usual: Vec<f64> = pairs().map(way).collect();
-            let middle = usual.len() / 2;
-            let median = *usual.select_nth_unstable_by(middle, f64::total_cmp).1;
-            (median / HALF * unsure).max(step[axis] / (windows as f64).sqrt())
-        });
-        Some(Spread { windows, axes })
+        let blocks = &*self.blocks.make_contiguous();
+        self.spreads = [SHORT, LONG].map(|windows| spread(blocks, windows, step));
     }
 
     /// Takes the mean of window `number`; the first and the last window of a shift that shows by it.
@@ -238,6 +210,35 @@ impl Shifts {
         self.pruned = 0;
         Some((first, last))
     }
+}
+
+/// How far averages of `windows` windows usually differ, from averages of eight and the stretch of each.
+fn spread(blocks: &[([f64; 3], u64)], windows: usize, step: [f64; 3]) -> Option<Spread> {
+    let many = windows / SHORT;
+    // One block between them is more than a transition.
+    let span = 2 * many + 1;
+    let pairs = || {
+        let spans = blocks.windows(span);
+        spans.filter(|span| span.first().map(|b| b.1) == span.last().map(|b| b.1))
+    };
+    let count = pairs().count();
+    if count < FEWEST * many {
+        return None;
+    }
+    let unsure = 1.0 + 2.0 * ERROR_OF_MEDIAN / (count as f64 / many as f64).sqrt();
+    let axes = [0, 1, 2].map(|axis| {
+        let sum =
+            |blocks: &[([f64; 3], u64)]| blocks.iter().map(|block| block.0[axis]).sum::<f64>();
+        let way = |span: &[([f64; 3], u64)]| {
+            let (before, after) = span.split_at(many);
+            (sum(after.get(1..).unwrap_or_default()) - sum(before)).abs() / many as f64
+        };
+        let mut usual: Vec<f64> = pairs().map(way).collect();
+        let middle = usual.len() / 2;
+        let median = *usual.select_nth_unstable_by(middle, f64::total_cmp).1;
+        (median / HALF * unsure).max(step[axis] / (windows as f64).sqrt())
+    });
+    Some(Spread { windows, axes })
 }
 
 #[cfg(test)]

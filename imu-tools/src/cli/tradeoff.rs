@@ -30,7 +30,7 @@ enum What {
 #[derive(Args, Debug)]
 struct Allan {
     /// Records of three axes, of each of two noises
-    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     records: u64,
 
     /// Length of a record: 4h, 90min, 600s
@@ -65,16 +65,18 @@ impl Tradeoff {
 impl Allan {
     fn run(self) -> Result<(), Error> {
         let plan = Plan {
-            duration_s: parse_duration(&self.duration)? as f64 * 1e-9,
+            duration_s: parse_duration(&self.duration)? as f64 / 1e9,
             rate_hz: self.rate,
             records: self.records,
             seed: self.seed,
         };
+        plan.check()?;
+        let files = self.output.as_deref().map(Files::create).transpose()?;
         let bar = progress::records(2 * plan.records, "simulating");
         let tradeoff = measure(&plan, |done| bar.set_position(done))?;
         bar.finish_and_clear();
-        if let Some(folder) = &self.output {
-            write(folder, &tradeoff)?;
+        if let Some(files) = files {
+            files.write(&tradeoff)?;
         }
         if self.json {
             super::print(&format!("{:#}\n", report::tradeoff::json(&tradeoff)))
@@ -84,21 +86,40 @@ impl Allan {
     }
 }
 
-/// The page and its plot.
-fn write(folder: &Path, tradeoff: &crate::tradeoff::allan::Tradeoff) -> Result<(), Error> {
+/// The page and its plot, begun before the work, so that a folder that cannot be written is told at once.
+struct Files {
+    before: Option<String>,
+    page: Output,
+    picture: Output,
+}
+
+impl Files {
     const PICTURE: &str = "tradeoff-allan.svg";
-    std::fs::create_dir_all(folder).map_err(|e| Error::io("make the folder", folder, e))?;
-    let page = folder.join("tradeoff.md");
-    let before = match std::fs::read_to_string(&page) {
-        Ok(text) => Some(text),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
-        Err(error) => return Err(Error::io("read", &page, error)),
-    };
-    let text = report::tradeoff::page(before.as_deref(), tradeoff, PICTURE);
-    let mut picture = Output::create(&folder.join(PICTURE))?;
-    picture.write(report::plot::tradeoff(tradeoff).svg().as_bytes())?;
-    let mut output = Output::create(&page)?;
-    output.write(text.as_bytes())?;
-    picture.finish()?;
-    output.finish()
+
+    fn create(folder: &Path) -> Result<Self, Error> {
+        if folder == Path::new("-") {
+            return Err(Error::usage(
+                "-o names a folder, in which a page and its plot are written, and no pipe"
+                    .to_owned(),
+            ));
+        }
+        std::fs::create_dir_all(folder).map_err(|e| Error::io("make the folder", folder, e))?;
+        let page = folder.join("tradeoff.md");
+        let before = match std::fs::read_to_string(&page) {
+            Ok(text) => Some(text),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
+            Err(error) => return Err(Error::io("read", &page, error)),
+        };
+        let picture = Output::create(&folder.join(Self::PICTURE))?;
+        Ok(Self { before, page: Output::create(&page)?, picture })
+    }
+
+    fn write(self, tradeoff: &crate::tradeoff::allan::Tradeoff) -> Result<(), Error> {
+        let Self { before, mut page, mut picture } = self;
+        let text = report::tradeoff::page(before.as_deref(), tradeoff, Self::PICTURE);
+        picture.write(report::plot::tradeoff(tradeoff).svg().as_bytes())?;
+        page.write(text.as_bytes())?;
+        picture.finish()?;
+        page.finish()
+    }
 }

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use crate::tradeoff::allan::{Accuracy, NOISES, Row, Scatter, Tradeoff};
+use crate::scene::display_duration;
+use crate::tradeoff::allan::{Accuracy, NOISES, Plan, Row, Scatter, Tradeoff};
 use crate::tradeoff::estimators::{Estimator, Gather, Method, Scalar};
 
 /// Where the section of a page begins and ends.
@@ -60,12 +61,14 @@ fn tables(tradeoff: &Tradeoff) -> Vec<Table> {
         let names = [gather(estimator), scalar(estimator), method(estimator)];
         names.into_iter().map(str::to_owned).chain(cells).collect()
     };
-    let mut prices = start(&["ns/value", "× sum", "ms at end", "state"]);
-    prices.extend(tradeoff.rows.iter().map(|Row { estimator, cost, .. }| {
+    let mut prices = start(&["ns/value", "× sum", "ms at end", "ns in all", "state"]);
+    prices.extend(tradeoff.rows.iter().map(|row| {
+        let Row { estimator, cost, .. } = row;
         let cells = vec![
             format!("{:.2}", cost.ns_per_value),
             format!("{:.1}", cost.ns_per_value / tradeoff.sum_ns),
             format!("{:.3}", cost.end_ms),
+            format!("{:.1}", row.price_ns(&tradeoff.plan)),
             bytes(cost.state_bytes),
         ];
         named(estimator, cells)
@@ -93,6 +96,9 @@ fn tables(tradeoff: &Tradeoff) -> Vec<Table> {
 }
 
 fn percent(scatter: &Scatter) -> String {
+    if !scatter.rms.is_finite() {
+        return "-".into();
+    }
     let digits = if scatter.rms < 0.01 { 3 } else { 1 };
     format!("{:.digits$} ± {:.digits$} %", 100.0 * scatter.rms, 100.0 * scatter.rms_sd)
 }
@@ -110,11 +116,11 @@ fn about(tradeoff: &Tradeoff) -> String {
     let plan = &tradeoff.plan;
     let limits = NOISES.map(|noise| 100.0 * plan.limit_of_random_walk(&noise));
     format!(
-        "{} records of three axes at rest, {} h at {} Hz, of each of two noises. No estimator can know K \
+        "{} records of three axes at rest, {} at {} Hz, of each of two noises. No estimator can know K \
          better than {:.1} % and {:.1} %, nor N better than {:.3} %. A plain sum of the same values takes \
          {:.2} ns a value.",
         plan.records,
-        plan.duration_s / 3600.0,
+        duration(plan),
         plan.rate_hz,
         limits[0],
         limits[1],
@@ -123,10 +129,17 @@ fn about(tradeoff: &Tradeoff) -> String {
     )
 }
 
+/// Length of a record, in words that `--duration` takes.
+fn duration(plan: &Plan) -> String {
+    display_duration((plan.duration_s * 1e9).round() as u64)
+}
+
 const COLUMNS: &str = "\
-K and N: root mean square of the relative error, and how far that itself scatters. × limit: over the \
-least that is possible. in 90 %: how often the 90 % interval holds the true K (a slope has none). \
-none: records from which no K was read. state: memory for three axes. ms at end: once for each axis.";
+K and N: root mean square of the relative error, and how far that itself scatters; where no K is read it \
+counts as 0. × limit: over the least that is possible. in 90 %: how often the 90 % interval, or the bound \
+where no K is read, holds the true K (a slope has none). none: records from which no K was read. ns/value: \
+as samples come (all windows: once they are all there), × sum: over a plain sum. ms at end: once for each \
+axis. ns in all: both, for each value of such a record. state: memory for three axes.";
 
 /// The tables on a terminal.
 #[must_use]
@@ -155,7 +168,7 @@ pub fn table(tradeoff: &Tradeoff) -> String {
     text + "\n" + COLUMNS + "\n"
 }
 
-/// Everything, for programs.
+/// Everything, for programs; what is no number is null.
 #[must_use]
 pub fn json(tradeoff: &Tradeoff) -> Value {
     let scatter = |s: &Scatter| {
@@ -179,6 +192,7 @@ pub fn json(tradeoff: &Tradeoff) -> Value {
                 "scalar": scalar(&row.estimator),
                 "method": method(&row.estimator),
                 "ns_per_value": row.cost.ns_per_value,
+                "ns_per_value_in_all": row.price_ns(&tradeoff.plan),
                 "end_ms": row.cost.end_ms,
                 "state_bytes": row.cost.state_bytes,
                 "accuracy": accuracy.collect::<Vec<_>>(),
@@ -213,7 +227,15 @@ pub fn page(before: Option<&str>, tradeoff: &Tradeoff, picture: &str) -> String 
                          machine.\n";
     let section = section(tradeoff, picture);
     let before = before.unwrap_or(TITLE);
-    match before.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1))) {
+    // The first beginning whose end comes before another begins.
+    let whole = before.match_indices(BEGIN).find_map(|(at, _)| {
+        let (head, rest) = before.split_at(at);
+        let inside = rest.get(BEGIN.len()..)?;
+        let next = inside.find(BEGIN).unwrap_or(inside.len());
+        let end = inside.get(..next)?.find(END)? + END.len();
+        Some((head, inside.get(end..)?))
+    });
+    match whole {
         Some((head, tail)) => format!("{head}{section}{tail}"),
         None => format!("{}\n\n{section}\n", before.trim_end()),
     }
@@ -222,10 +244,10 @@ pub fn page(before: Option<&str>, tradeoff: &Tradeoff, picture: &str) -> String 
 fn section(tradeoff: &Tradeoff, picture: &str) -> String {
     let plan = &tradeoff.plan;
     let mut text = format!(
-        "{BEGIN}\n## Estimators of N and K\n\n`imu tradeoff allan --records {} --duration {}s --rate {} \
+        "{BEGIN}\n## Estimators of N and K\n\n`imu tradeoff allan --records {} --duration \"{}\" --rate {} \
          --seed {} -o FOLDER` wrote this section.\n\n{}\n\n![error of K over price]({picture})\n\n",
         plan.records,
-        plan.duration_s,
+        duration(plan),
         plan.rate_hz,
         plan.seed,
         about(tradeoff)
@@ -241,25 +263,14 @@ fn section(tradeoff: &Tradeoff, picture: &str) -> String {
         }
         text.push('\n');
     }
-    let _ = write!(text, "{COLUMNS}\n\n{ADVICE}\n{END}");
+    let _ = write!(text, "{COLUMNS}\n{END}");
     text
 }
-
-const ADVICE: &str = "\
-- On a microcontroller: the disjoint ladder in f32; its state is the smallest, and K costs a few per \
-cent of accuracy.
-- Anywhere else: four windows in f64, what `imu calibrate` does. All windows of a record say no more, \
-and need all of it in memory.
-- Exact maximum likelihood (`--estimator ml`) is as good as can be for white noise and random walk \
-alone, and wrong without a word where there is anything else; the fit of octaves leaves out averaging \
-times that contradict the rest.
-- Slopes are there to compare with: they scatter further than they must, misread N where the walk sets in \
-early, and often read no K at all.";
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tradeoff::allan::{Plan, measure};
+    use crate::tradeoff::allan::measure;
 
     #[test]
     fn a_section_takes_the_place_of_itself_and_of_nothing_else() {
@@ -273,6 +284,11 @@ mod tests {
         assert!(with.starts_with(other) && with.matches(BEGIN).count() == 1);
         let more = format!("{with}\nMore.\n");
         assert_eq!(page(Some(&more), &tradeoff, "b.svg"), more);
+        // A beginning without an end takes nothing with it, however often.
+        let broken = format!("# Mine\n{BEGIN}\nKept.\n");
+        let once = page(Some(&broken), &tradeoff, "b.svg");
+        assert!(once.starts_with(&broken));
+        assert_eq!(page(Some(&once), &tradeoff, "b.svg"), once);
         // A line for each estimator, in all forms.
         assert_eq!(table(&tradeoff).lines().filter(|line| line.contains(" f64 ")).count(), 3 * 7);
         assert_eq!(json(&tradeoff)["estimators"].as_array().unwrap().len(), 11);

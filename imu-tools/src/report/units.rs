@@ -31,10 +31,13 @@ pub struct Twin {
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 const MICRO_G: f64 = 1e6 / 9.806_65;
 
+/// Where a parameter stands in the noise of an axis; `None` of one that was not asked for.
+pub type Of = fn(&AxisNoise) -> Option<Parameter>;
+
 impl Quantity {
-    /// All parameters of a sensor, and where they stand in the noise of an axis; `None` for what was not asked for.
+    /// All parameters of a sensor, and where they stand in the noise of an axis.
     #[must_use]
-    pub fn all(kind: SensorKind) -> [(Self, fn(&AxisNoise) -> Option<Parameter>); 5] {
+    pub fn all(kind: SensorKind) -> [(Self, Of); 5] {
         [
             (Self::NoiseDensity(kind), |axis| Some(axis.noise_density)),
             (Self::RandomWalk(kind), |axis| Some(axis.random_walk)),
@@ -47,7 +50,7 @@ impl Quantity {
     /// Those of them that some axis of a sensor, or all axes together, have.
     pub fn fitted(
         sensor: &SensorNoise,
-    ) -> impl Iterator<Item = (Self, fn(&AxisNoise) -> Option<Parameter>)> {
+    ) -> impl Iterator<Item = (Self, Of)> {
         Self::all(sensor.kind).into_iter().filter(|(_, of)| {
             sensor.axes.iter().chain([&sensor.pooled]).any(|axis| of(axis).is_some())
         })

@@ -2,7 +2,8 @@
 //!
 //! Records of known noise at rest are simulated and given to all. The error is that of
 //! K̂/K − 1, beside the limit √(2N/(KT)) that no estimator can beat on a record of length T (and
-//! √(1/2n) of N, n samples); what an estimator does not call observable has no error, and is counted.
+//! √(1/2n) of N, n samples). What an estimator does not call observable counts as 0, an error of −1, or
+//! an estimator that declines hard records would look better.
 //!
 //! ```
 //! use imu_tools::tradeoff::allan::{Plan, measure};
@@ -38,6 +39,10 @@ pub const NOISES: [Noise; 2] = [
     Noise { noise_density: 0.019, random_walk: 5e-4 },
 ];
 
+/// Each on random streams of its own.
+const SENSORS: [(Noise, Sensor); 2] =
+    [(NOISES[0], Sensor::GYROSCOPE), (NOISES[1], Sensor::ACCELEROMETER)];
+
 /// What is simulated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
@@ -45,7 +50,7 @@ pub struct Plan {
     pub duration_s: f64,
     /// Samples a second. Error of K hardly depends on it.
     pub rate_hz: f64,
-    /// Records of three axes, of each noise.
+    /// Records of three axes, of each noise, at most 10 000.
     pub records: u64,
     /// Seed of the first; they count up.
     pub seed: u64,
@@ -59,6 +64,22 @@ impl Default for Plan {
 }
 
 impl Plan {
+    /// # Errors
+    /// As [`measure`].
+    pub fn check(&self) -> Result<(), Error> {
+        let refused = |sentence: &str| Err(Error::usage(sentence.to_owned()));
+        if !(1000.0..=1e7).contains(&(self.duration_s * self.rate_hz)) {
+            return refused(
+                "a record of the trade-off has from 1000 to 10 million samples: choose another --duration \
+                 or --rate",
+            );
+        }
+        if !(1..=10_000).contains(&self.records) {
+            return refused("a trade-off is of 1 to 10 000 records: choose another --records");
+        }
+        Ok(())
+    }
+
     /// Samples of an axis.
     #[must_use]
     pub fn samples(&self) -> usize {
@@ -81,13 +102,14 @@ impl Plan {
 /// How far estimates scatter about the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scatter {
-    /// Root mean square of the relative error; NaN where there is no estimate.
+    /// Root mean square of the relative error, of −1 where there is no estimate.
     pub rms: f64,
     /// Standard deviation of that, by the number of records.
     pub rms_sd: f64,
-    /// Median of the relative error.
+    /// Median of it.
     pub median: f64,
-    /// Part of the 90 % intervals that hold the truth; `None` of a method that gives none.
+    /// Part of the 90 % intervals and, where there is no estimate, of the bounds, that hold the truth;
+    /// `None` of a method that gives none.
     pub coverage: Option<f64>,
     /// Part of the records without an estimate.
     pub without: f64,
@@ -113,6 +135,14 @@ pub struct Row {
     pub accuracy: [Accuracy; 2],
 }
 
+impl Row {
+    /// Nanoseconds for each value, with the share of what is done at the end of a record.
+    #[must_use]
+    pub fn price_ns(&self, plan: &Plan) -> f64 {
+        self.cost.ns_per_value + self.cost.end_ms * 1e6 / plan.samples() as f64
+    }
+}
+
 /// All of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tradeoff {
@@ -120,7 +150,7 @@ pub struct Tradeoff {
     pub plan: Plan,
     /// A plain sum of the same values, ns a value: the baseline.
     pub sum_ns: f64,
-    /// The cheapest estimator first.
+    /// One for each estimator.
     pub rows: Vec<Row>,
 }
 
@@ -128,24 +158,19 @@ pub struct Tradeoff {
 /// [`Plan::records`].
 ///
 /// # Errors
-/// When the plan holds no number that can be simulated, or fewer than 1000 samples a record.
+/// When a record would have fewer than 1000 samples, or more than 10 million, which are kept in memory;
+/// when there are no records, or more than 10 000.
 pub fn measure(plan: &Plan, mut progress: impl FnMut(u64)) -> Result<Tradeoff, Error> {
-    if !(plan.duration_s * plan.rate_hz >= 1000.0 && plan.duration_s * plan.rate_hz < 1e8) {
-        return Err(Error::usage(
-            "a record of the trade-off has from 1000 to 100 million samples: choose another --duration \
-             or --rate"
-                .to_owned(),
-        ));
-    }
-    let prices = cost::measure(1.0 / plan.rate_hz, &simulate(plan, &NOISES[0], plan.seed)?);
+    plan.check()?;
+    let prices = cost::measure(1.0 / plan.rate_hz, &simulate(plan, SENSORS[0], plan.seed)?);
     let mut done = 0;
     let mut accuracies = Vec::new();
-    for noise in &NOISES {
-        let records = simulate_all(plan, noise, || {
+    for (noise, sensor) in SENSORS {
+        let records = simulate_all(plan, (noise, sensor), || {
             done += 1;
             progress(done);
         })?;
-        accuracies.push(accuracy(&records, noise));
+        accuracies.push(accuracy(&records, &noise));
     }
     let rows =
         ESTIMATORS.iter().enumerate().zip(prices.costs).filter_map(|((k, &estimator), cost)| {
@@ -156,12 +181,16 @@ pub fn measure(plan: &Plan, mut progress: impl FnMut(u64)) -> Result<Tradeoff, E
 }
 
 /// A sensor at rest.
-fn simulate(plan: &Plan, noise: &Noise, seed: u64) -> Result<Vec<[f64; 3]>, Error> {
+fn simulate(
+    plan: &Plan,
+    (noise, sensor): (Noise, Sensor),
+    seed: u64,
+) -> Result<Vec<[f64; 3]>, Error> {
     let terms = (
         White { noise_density: noise.noise_density },
         RandomWalk { random_walk: noise.random_walk },
     );
-    let mut sensor = ThreeAxis::prepare([terms; 3], 1.0 / plan.rate_hz, seed, Sensor::GYROSCOPE)
+    let mut sensor = ThreeAxis::prepare([terms; 3], 1.0 / plan.rate_hz, seed, sensor)
         .map_err(|error| Error::usage(format!("this cannot be simulated: {error}")))?;
     Ok((0..plan.samples()).map(|_| sensor.step([0.0; 3])).collect())
 }
@@ -169,7 +198,7 @@ fn simulate(plan: &Plan, noise: &Noise, seed: u64) -> Result<Vec<[f64; 3]>, Erro
 /// The estimates of all axes of all records, on all processors; `done` is called after each record.
 fn simulate_all(
     plan: &Plan,
-    noise: &Noise,
+    sensor: (Noise, Sensor),
     mut done: impl FnMut(),
 ) -> Result<Vec<Estimates>, Error> {
     let next = AtomicU64::new(0);
@@ -185,7 +214,7 @@ fn simulate_all(
                     if record >= plan.records {
                         return;
                     }
-                    let values = simulate(plan, noise, plan.seed.wrapping_add(record));
+                    let values = simulate(plan, sensor, plan.seed.wrapping_add(record));
                     let estimates = values.map(|values| estimate(1.0 / plan.rate_hz, &values));
                     if to.send((record, estimates)).is_err() {
                         return;
@@ -217,16 +246,19 @@ fn accuracy(records: &[Estimates], noise: &Noise) -> Vec<Accuracy> {
 }
 
 fn scatter(estimates: impl Iterator<Item = Parameter>, truth: f64) -> Scatter {
-    let (mut errors, mut held, mut intervals, mut all) = (Vec::new(), 0, 0, 0);
+    let (mut errors, mut held, mut intervals, mut without) = (Vec::new(), 0, 0, 0);
     for estimate in estimates {
-        all += 1;
         let (low, high) = match estimate {
             Parameter::Observable { value, low90, high90, .. } => {
                 errors.push(value / truth - 1.0);
                 (low90, high90)
             }
             // All that is said is a bound.
-            Parameter::NotObservable { upper90, .. } => (0.0, upper90),
+            Parameter::NotObservable { upper90, .. } => {
+                errors.push(-1.0);
+                without += 1;
+                (0.0, upper90)
+            }
         };
         if !high.is_nan() {
             intervals += 1;
@@ -242,7 +274,7 @@ fn scatter(estimates: impl Iterator<Item = Parameter>, truth: f64) -> Scatter {
         rms_sd: rms / (2.0 * count).sqrt(),
         median: errors.get(errors.len() / 2).copied().unwrap_or(f64::NAN),
         coverage: (intervals > 0).then(|| f64::from(held) / f64::from(intervals)),
-        without: 1.0 - count / f64::from(all.max(1)),
+        without: f64::from(without) / count,
     }
 }
 
@@ -256,14 +288,16 @@ mod tests {
         let seen = |value, low90, high90| Parameter::Observable { value, sd: 1.0, low90, high90 };
         let unseen = Parameter::NotObservable { upper90: 1.5, record_at_least_s: 1.0 };
         let estimates = [seen(3.0, 1.0, 4.0), seen(1.0, 0.5, 1.5), seen(2.0, 1.5, 2.5), unseen];
+        // Errors of ½, −½, 0 and −1.
         let s = scatter(estimates.into_iter(), 2.0);
-        assert!((s.rms - (0.5_f64 / 3.0).sqrt()).abs() < 1e-15);
+        assert!((s.rms - (1.5_f64 / 4.0).sqrt()).abs() < 1e-15);
         assert_eq!((s.median, s.coverage, s.without), (0.0, Some(0.5), 0.25));
         let nothing = scatter([f64::NAN; 2].map(|v| seen(v, v, v)).into_iter(), 2.0);
         assert_eq!((nothing.coverage, nothing.without), (None, 0.0));
     }
 
-    /// The errors of 60 axes scatter by 9 %: five of those, and what every estimator is known for.
+    /// The rms error of 60 axes scatters by 9 %, five of which are 46 %: fits are at 1.03 to 1.13 times the
+    /// limit in `docs/tradeoff.md`, maximum likelihood at 1.03; a slope is far beyond them all.
     #[test]
     fn estimators_are_as_good_as_they_are_known_to_be() {
         let plan = Plan { duration_s: 14_400.0, rate_hz: 2.0, records: 20, seed: 1 };
@@ -272,13 +306,20 @@ mod tests {
             let k = row.accuracy[1].random_walk;
             let over = k.rms / plan.limit_of_random_walk(&NOISES[1]);
             let (low, high) = match row.estimator.method {
-                Method::Fit => (0.5, 1.8),
-                Method::MaximumLikelihood => (0.5, 1.6),
-                Method::Slope => (1.2, 6.0),
+                Method::Fit => (0.54 * 1.03, 1.46 * 1.13),
+                Method::MaximumLikelihood => (0.54 * 1.03, 1.46 * 1.03),
+                Method::Slope => (1.46 * 1.13, f64::INFINITY),
             };
             assert!((low..high).contains(&over), "{:?}: {over} × limit", row.estimator);
-            assert!(row.cost.ns_per_value > 0.0 && row.cost.state_bytes > 0);
+            assert!(row.price_ns(&plan).is_finite() && row.cost.state_bytes > 0);
         }
-        assert!(measure(&Plan { rate_hz: f64::NAN, ..plan }, |_| {}).is_err());
+        for plan in [
+            Plan { rate_hz: f64::NAN, ..plan },
+            Plan { rate_hz: 1e6, ..plan },
+            Plan { records: 0, ..plan },
+            Plan { records: u64::MAX, ..plan },
+        ] {
+            assert!(measure(&plan, |_| {}).is_err(), "{plan:?}");
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! What an estimator costs: time for each value, time at the end, and memory.
 //!
-//! The passes of all are interleaved with those of a plain sum of the same array, and the fastest of each
-//! counts: on a machine with other work a mean measures the others as well.
+//! All take turns, and the fastest turn of each counts: on a machine with other work a mean measures the
+//! others as well. What takes samples as they come is timed on an array that caches hold, beside a plain
+//! sum of it; what needs a whole record, on a whole record.
 
 use std::hint::black_box;
 use std::mem::size_of;
@@ -15,7 +16,7 @@ use super::estimators::{
 use crate::calibrate::block_means::BlockMeans;
 use crate::calibrate::maximum_likelihood;
 
-/// Samples of a pass: they fit a second-level cache.
+/// Samples of a pass, 0.4 MB.
 const SAMPLES: usize = 1 << 14;
 /// Passes of those that take samples as they come, and of what is done once.
 const PASSES: usize = 200;
@@ -83,13 +84,32 @@ pub(super) fn measure(tau0_s: f64, record: &[[f64; 3]]) -> Prices {
         fastest.map(|time| time * 1e9 / (3 * pass.len()) as f64);
     let mut whole = BlockMeans::new();
     whole.extend(record);
-    let best_of =
-        |run: &dyn Fn()| (0..PASSES_AT_END).map(|_| seconds(run)).fold(f64::INFINITY, f64::min);
     let octaves = overlapping(&column);
-    let all_windows = best_of(&|| {
-        black_box(overlapping(black_box(&column)));
-    });
-    let costs = ESTIMATORS.iter().map(|&Estimator { gather, scalar, method }| {
+    let mut all_windows = f64::INFINITY;
+    let mut ends = [f64::INFINITY; ESTIMATORS.len()];
+    for _ in 0..PASSES_AT_END {
+        all_windows = all_windows.min(seconds(|| {
+            black_box(overlapping(black_box(&column)));
+        }));
+        for (end, estimator) in ends.iter_mut().zip(ESTIMATORS) {
+            *end = end.min(match estimator.method {
+                Method::MaximumLikelihood => {
+                    let fit = || {
+                        black_box(maximum_likelihood::fit(black_box(&whole), tau0_s, 0.0));
+                    };
+                    seconds(fit) / 3.0
+                }
+                method => seconds(|| {
+                    black_box(read(
+                        black_box(&octaves),
+                        method,
+                        sampling(estimator.gather, tau0_s),
+                    ));
+                }),
+            });
+        }
+    }
+    let costs = ESTIMATORS.iter().zip(ends).map(|(&Estimator { gather, scalar, .. }, end)| {
         let (ns_per_value, state_bytes) = match (gather, scalar) {
             (Gather::Disjoint, Scalar::F32) => (disjoint32, size_of_val(&ladders.0)),
             (Gather::Disjoint, Scalar::F64) => (disjoint64, size_of_val(&ladders.1)),
@@ -101,16 +121,6 @@ pub(super) fn measure(tau0_s: f64, record: &[[f64; 3]]) -> Prices {
                 3 * 2 * size_of::<f64>() * (column.len() + 1),
             ),
             (Gather::BlockMeans, _) => (blocks, BlockMeans::LARGEST_BYTES),
-        };
-        let end = match method {
-            Method::MaximumLikelihood => {
-                best_of(&|| {
-                    black_box(maximum_likelihood::fit(black_box(&whole), tau0_s, 0.0));
-                }) / 3.0
-            }
-            Method::Fit | Method::Slope => best_of(&|| {
-                black_box(read(black_box(&octaves), method, sampling(gather, tau0_s)));
-            }),
         };
         Cost { ns_per_value, end_ms: end * 1e3, state_bytes }
     });

@@ -18,7 +18,7 @@ pub enum Gather {
     FourWindows,
     /// Every overlapping window at every octave, of a record that is kept in memory.
     Overlapping,
-    /// Means of blocks of half a second, at most 2¹⁶ of them.
+    /// Means of blocks of half a second or more, at most 2¹⁶ of them.
     BlockMeans,
 }
 
@@ -53,7 +53,7 @@ pub struct Estimator {
     pub method: Method,
 }
 
-/// All that are compared, the cheapest first.
+/// All that are compared.
 pub(super) const ESTIMATORS: [Estimator; 11] = {
     use Gather::{BlockMeans, Disjoint, FourWindows, Overlapping};
     use Method::{Fit, MaximumLikelihood, Slope};

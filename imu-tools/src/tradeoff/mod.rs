@@ -2,8 +2,8 @@
 //! that runs this.
 //!
 //! Everything here is measured, nothing looked up: errors by simulating many records of known noise
-//! ([`allan`]), the price by timing the same code on the same kind of data, interleaved with a plain sum
-//! of the same array, so that a busy machine slows both.
+//! ([`allan`]), the price by timing the same code on the same kind of data, all in turns, so that a busy
+//! machine slows one as much as another; a plain sum of the same array is the baseline.
 
 pub mod allan;
 mod cost;

@@ -13,12 +13,13 @@ const HEIGHT: f64 = 400.0;
 /// as large, are in the table only.
 #[must_use]
 pub fn tradeoff(tradeoff: &Tradeoff) -> Figure {
-    let description = "Error of the random walk over nanoseconds a value, of each estimator";
+    let description =
+        "Error of the random walk over nanoseconds a value, of all estimators but slopes";
     let charts = NOISES.iter().enumerate().map(|(k, noise)| {
         let limit = tradeoff.plan.limit_of_random_walk(noise);
         let points = tradeoff.rows.iter().filter_map(|row| {
             let scatter = row.accuracy.get(k)?.random_walk;
-            let point = (row.cost.ns_per_value, 100.0 * scatter.rms);
+            let point = (row.price_ns(&tradeoff.plan), 100.0 * scatter.rms);
             Some((row, point, 100.0 * scatter.rms_sd))
         });
         let shown = || points.clone().filter(|(row, ..)| row.estimator.method != Method::Slope);
@@ -40,7 +41,7 @@ pub fn tradeoff(tradeoff: &Tradeoff) -> Figure {
         chart.finish(
             &format!("tradeoff-{k}"),
             &format!("rms error of K where N/K = {period:.0} s"),
-            "price, ns a value",
+            "price in all, ns a value",
             "rms error of K, %",
         )
     });
