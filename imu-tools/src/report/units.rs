@@ -48,9 +48,7 @@ impl Quantity {
     }
 
     /// Those of them that some axis of a sensor, or all axes together, have.
-    pub fn fitted(
-        sensor: &SensorNoise,
-    ) -> impl Iterator<Item = (Self, Of)> {
+    pub fn fitted(sensor: &SensorNoise) -> impl Iterator<Item = (Self, Of)> {
         Self::all(sensor.kind).into_iter().filter(|(_, of)| {
             sensor.axes.iter().chain([&sensor.pooled]).any(|axis| of(axis).is_some())
         })
