@@ -139,10 +139,10 @@ mod tests {
         assert!((k * 60.0 - (1.0_f64 / 3600.0).to_radians()).abs() < 1e-18);
         // A ramp of 1 °/h/h changes the rate by 1 °/h in an hour; B is a rate, Q an angle of 1/3600 °.
         let of = |quantity: Quantity| 1.0 / quantity.twin().per_si;
-        let hourly = (1.0_f64 / 3600.0).to_radians() / 3600.0;
+        let hourly = (1.0_f64 / 3600.0).to_radians();
         let kind = SensorKind::Gyroscope;
         assert!((of(Quantity::RateRamp(kind)) * 3600.0 - hourly).abs() < 1e-18);
         assert!((of(Quantity::BiasInstability(kind)) - hourly).abs() < 1e-18);
-        assert!((of(Quantity::Quantisation(kind)) - hourly * 3600.0).abs() < 1e-15);
+        assert!((of(Quantity::Quantisation(kind)) - hourly).abs() < 1e-18);
     }
 }

@@ -15,13 +15,13 @@
 //! ```
 //! use imu_core::allan::{AllanLadder, Difference, Parameter, Sampling, Terms, fit_terms, select_terms};
 //!
-//! // White noise of sd 0.1 at 100 Hz, and an angle that is counted in steps of 0.01.
+//! // White noise of sd 1 at 100 Hz, and an angle that is counted in steps of 0.01.
 //! let mut ladder: AllanLadder<f64, 1, 24, 4> = AllanLadder::new();
 //! let mut state = 1_u32;
 //! let (mut angle, mut counted) = (0.0_f64, 0.0);
 //! for _ in 0..100_000 {
 //!     state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-//!     angle += 0.01 * 0.1 * 12_f64.sqrt() * (f64::from(state) / 4_294_967_296.0 - 0.5);
+//!     angle += 0.01 * 12_f64.sqrt() * (f64::from(state) / 4_294_967_296.0 - 0.5);
 //!     let last = counted;
 //!     counted = (angle / 0.01).round() * 0.01;
 //!     ladder.push(&[(counted - last) / 0.01]);
