@@ -195,7 +195,8 @@ impl Checker {
     }
 
     pub(super) fn finish(&self) -> Checks {
-        let mut checks = Checks { longest_hold: self.longest, ..Checks::default() };
+        let (longest_hold, not_finite) = (self.longest, self.not_finite);
+        let mut checks = Checks { longest_hold, not_finite, ..Checks::default() };
         if self.samples == 0 {
             return checks;
         }
@@ -219,7 +220,6 @@ impl Checker {
         checks.held = (held(&live, all_same / pairs) * pairs).round() as u64;
         checks.zeros = self.first.iter().filter(|value| **value == [0.0; 3]).count() as f64
             / self.first.len().max(1) as f64;
-        checks.not_finite = self.not_finite;
         checks
     }
 }
@@ -295,6 +295,14 @@ mod tests {
         let checks = check(&noise(20_000, 1));
         assert_eq!((checks.saturated, checks.stuck, checks.held), ([0; 3], [false; 3], 0));
         assert_eq!(checks.step, [None; 3]);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_counted_also_where_nothing_else_is() {
+        for finite in [0, 5] {
+            let values = [vec![[f64::NAN, 0.0, 0.0]; 7], vec![[1.0; 3]; finite]].concat();
+            assert_eq!(check(&values).not_finite, 7);
+        }
     }
 
     #[test]
