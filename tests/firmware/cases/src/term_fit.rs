@@ -10,8 +10,8 @@ use imu_core::allan::{
     likelihood_ratio, select_terms,
 };
 
-/// τ from 10 ms to 82 s, for the emulated M0's sake.
-const LEVELS: usize = 14;
+/// τ from 10 ms to 5 s, for the emulated M0's sake.
+const LEVELS: usize = 10;
 const TAU0: f64 = 0.01;
 
 /// Q, N, B, K, R.

@@ -57,25 +57,43 @@ fn check(bless: bool) -> Result<bool> {
         .map_or_else(|| folder.join("target"), PathBuf::from)
         .join("firmware");
 
-    let expected = host::run();
+    let (expected, measured) = std::thread::scope(|scope| {
+        // The emulators take nearly all the time, a processor each.
+        let runs = images::TARGETS
+            .each_ref()
+            .map(|target| scope.spawn(|| measure(&toolchain, target, &folder, &target_dir)));
+        let expected = host::run();
+        (expected, runs.map(|run| run.join().map_err(|_| "a run on QEMU panicked".to_string())))
+    });
     let mut good = true;
     let mut figures = Vec::new();
-    for target in &images::TARGETS {
-        let built = images::build(&toolchain, target, &folder, &target_dir)?;
-        let report = qemu::run(target, &built.image("all"))?;
+    for (target, measured) in images::TARGETS.iter().zip(measured) {
+        let report = measured??;
         good &= host::compare(target.name, &expected, &report.words);
         figures.extend(report.figures);
-        for name in images::SINGLE {
-            qemu::run(target, &built.image(name))?;
-            figures.push(ceilings::Figure {
-                target: target.name.into(),
-                case: (*name).into(),
-                what: "flash".into(),
-                unit: "bytes".into(),
-                value: images::flash_bytes(&built.image(name))? as f64,
-            });
-        }
     }
     good &= ceilings::check(&folder.join("ceilings.csv"), &figures, &toolchain.version, bless)?;
     Ok(good)
+}
+
+/// Builds the images of a target and runs them: what they print, and the flash of those of one function.
+fn measure(
+    toolchain: &toolchain::Toolchain,
+    target: &images::Target,
+    folder: &Path,
+    target_dir: &Path,
+) -> Result<qemu::Report> {
+    let built = images::build(toolchain, target, folder, target_dir)?;
+    let mut report = qemu::run(target, &built.image("all"))?;
+    for name in images::SINGLE {
+        qemu::run(target, &built.image(name))?;
+        report.figures.push(ceilings::Figure {
+            target: target.name.into(),
+            case: (*name).into(),
+            what: "flash".into(),
+            unit: "bytes".into(),
+            value: images::flash_bytes(&built.image(name))? as f64,
+        });
+    }
+    Ok(report)
 }
