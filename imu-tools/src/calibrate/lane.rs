@@ -74,12 +74,21 @@ impl<'scope> Lane<'scope> {
         let _ = self.orders.send(order);
     }
 
+    /// There are no more samples: the thread works out the noise while others go on.
+    pub(super) fn close(self) -> Closed<'scope> {
+        Closed(self.noise)
+    }
+}
+
+/// A lane that knows of its last sample.
+pub(super) struct Closed<'scope>(ScopedJoinHandle<'scope, Option<SensorNoise>>);
+
+impl Closed<'_> {
     /// The noise, or nothing if there was not a sample.
     ///
     /// # Errors
     /// If the thread has failed, which is a fault of the program.
-    pub(super) fn finish(self) -> Result<Option<SensorNoise>, Error> {
-        drop(self.orders);
-        self.noise.join().map_err(|_| Error::data("the computation stopped unexpectedly"))
+    pub(super) fn noise(self) -> Result<Option<SensorNoise>, Error> {
+        self.0.join().map_err(|_| Error::data("the computation stopped unexpectedly"))
     }
 }

@@ -318,7 +318,9 @@ pub fn examine(
             accelerometer.take(&mut block.accelerometer, range);
             progress(Progress { bytes: source.bytes_read(), samples });
         }
-        Ok::<_, Error>((gyroscope.finish()?, accelerometer.finish()?))
+        // Both are told of the end before either is waited for.
+        let (gyroscope, accelerometer) = (gyroscope.close(), accelerometer.close());
+        Ok::<_, Error>((gyroscope.noise()?, accelerometer.noise()?))
     })?;
     let named = |noise: Option<SensorNoise>, topic: &str| {
         noise.map(|noise| SensorNoise { topic: topic.to_owned(), ..noise })
