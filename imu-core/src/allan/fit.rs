@@ -228,33 +228,54 @@ fn deviance_of_walk(likelihood: &Likelihood, point: &Point, best: &Point) -> f64
 /// The point between `best` and `end` where the deviance of K reaches `level`, or `end`.
 fn walk_bound(likelihood: &Likelihood, best: &Point, end: f64, level: f64) -> Point {
     let point = |x| Point { x, at: likelihood.at(x) };
-    // Outward in growing steps, then bisection.
+    // The root of the deviance is nearly a straight line.
+    let beyond =
+        |point: &Point| libm::sqrt(deviance_of_walk(likelihood, point, best)) - libm::sqrt(level);
+    // Outward in growing steps.
     let direction = if end > best.x { 1.0 } else { -1.0 };
-    let (mut inside, mut step) = (best.x, 0.1);
+    let (mut inside, mut step) = ((best.x, -libm::sqrt(level)), 0.1);
     let mut outside = loop {
-        let x = inside + direction * step;
-        if (end - x) * direction <= 0.0 {
-            let last = point(end);
-            if deviance_of_walk(likelihood, &last, best) < level {
-                return last;
-            }
-            break end;
+        let x = inside.0 + direction * step;
+        let at_end = (end - x) * direction <= 0.0;
+        let there = point(if at_end { end } else { x });
+        let off = beyond(&there);
+        if off > 0.0 {
+            break (there.x, off);
         }
-        if deviance_of_walk(likelihood, &point(x), best) > level {
-            break x;
+        if at_end {
+            return there;
         }
-        inside = x;
+        inside = (x, off);
         step *= 2.0;
     };
-    while (outside - inside).abs() > 2e-3 {
-        let middle = 0.5 * (inside + outside);
-        if deviance_of_walk(likelihood, &point(middle), best) > level {
-            outside = middle;
+    // Then along the chord, whose end that stays is halved in weight (the Illinois rule: Dowell and Jarratt 1971).
+    let mut there = point(outside.0);
+    let mut stayed = 0_i8;
+    for _ in 0..40 {
+        if (outside.0 - inside.0).abs() < 2e-3 {
+            break;
+        }
+        let x = outside.0 - outside.1 * (outside.0 - inside.0) / (outside.1 - inside.1);
+        there = point(x);
+        let off = beyond(&there);
+        if off.abs() < 1e-3 {
+            break;
+        }
+        if off > 0.0 {
+            outside = (x, off);
+            if stayed > 0 {
+                inside.1 *= 0.5;
+            }
+            stayed = 1;
         } else {
-            inside = middle;
+            inside = (x, off);
+            if stayed < 0 {
+                outside.1 *= 0.5;
+            }
+            stayed = -1;
         }
     }
-    point(0.5 * (inside + outside))
+    there
 }
 
 fn random_walk(likelihood: &Likelihood, (low, high): (f64, f64), best: Point) -> Parameter {

@@ -12,24 +12,65 @@ pub(super) struct Point {
     pub at: AtRatio,
 }
 
-/// The minimum over ln(K/N) in low…high by golden section.
+/// How near to the minimum is near enough: a ten-thousandth of K.
+const NEAR: f64 = 1e-4;
+
+/// The minimum over ln(K/N) in low…high: the vertex of the parabola through the three best points, or a golden
+/// section of the longer side where that is not to be trusted (Brent 1973, chapter 5).
 pub(super) fn refine(likelihood: &Likelihood, mut low: f64, mut high: f64) -> Point {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    /// (3 − √5)/2
+    const SECTION: f64 = 0.381_966_011_250_105_1;
     let point = |x| Point { x, at: likelihood.at(x) };
-    let mut a = point(high - GOLDEN * (high - low));
-    let mut b = point(low + GOLDEN * (high - low));
-    while high - low > 2e-4 {
-        if a.at.minimum < b.at.minimum {
-            high = b.x;
-            b = a;
-            a = point(high - GOLDEN * (high - low));
+    let mut best = point(low + SECTION * (high - low));
+    let (mut second, mut third) = (best, best);
+    let (mut step, mut step_before) = (0.0_f64, 0.0_f64);
+    // Each golden section leaves 0.62: from the widest range, with as many parabolas between them.
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if (best.x - middle).abs() + 0.5 * (high - low) <= 2.0 * NEAR {
+            break;
+        }
+        let (to_second, to_third) = (best.x - second.x, best.x - third.x);
+        let r = to_second * (best.at.minimum - third.at.minimum);
+        let q = to_third * (best.at.minimum - second.at.minimum);
+        let (above, below) = (to_third * q - to_second * r, 2.0 * (r - q));
+        let vertex = above / below;
+        // Also where the parabola is none, and its vertex no number.
+        let trusted = vertex.abs() < 0.5 * step_before.abs()
+            && best.x + vertex > low + NEAR
+            && best.x + vertex < high - NEAR;
+        if trusted {
+            (step_before, step) = (step, vertex);
         } else {
-            low = a.x;
-            a = b;
-            b = point(low + GOLDEN * (high - low));
+            step_before = if best.x < middle { high - best.x } else { low - best.x };
+            step = SECTION * step_before;
+        }
+        let next =
+            point(best.x + if step.abs() < NEAR { libm::copysign(NEAR, step) } else { step });
+        if next.at.minimum <= best.at.minimum {
+            if next.x < best.x {
+                high = best.x;
+            } else {
+                low = best.x;
+            }
+            (third, second, best) = (second, best, next);
+        } else {
+            if next.x < best.x {
+                low = next.x;
+            } else {
+                high = next.x;
+            }
+            if next.at.minimum <= second.at.minimum || second.x == best.x {
+                (third, second) = (second, next);
+            } else if next.at.minimum <= third.at.minimum
+                || third.x == best.x
+                || third.x == second.x
+            {
+                third = next;
+            }
         }
     }
-    if a.at.minimum < b.at.minimum { a } else { b }
+    best
 }
 
 /// The best ratio in the whole range.

@@ -13,14 +13,10 @@ const LONGEST: usize = 96;
 #[derive(Clone, Copy, Debug)]
 pub struct Shape {
     len: usize,
-    words: [Word; LONGEST / 8],
-}
-
-/// The bits that are fixed, and which ones are.
-#[derive(Clone, Copy, Debug, Default)]
-struct Word {
-    bits: u64,
-    fixed: u64,
+    /// The fixed bits of the first words, and which ones are fixed. Two lists, and not one of pairs: several words are
+    /// compared at once.
+    bits: [u64; LONGEST / 8],
+    fixed: [u64; LONGEST / 8],
 }
 
 impl Shape {
@@ -31,14 +27,14 @@ impl Shape {
         if fixed.iter().any(|range| range.end > LONGEST) {
             return None;
         }
-        let mut words = [Word::default(); LONGEST / 8];
-        for (k, (word, bytes)) in words.iter_mut().zip(head).enumerate() {
+        let (mut bits, mut masks) = ([0; LONGEST / 8], [0; LONGEST / 8]);
+        for (k, ((bits, mask), bytes)) in bits.iter_mut().zip(&mut masks).zip(head).enumerate() {
             let is_fixed = |at: usize| fixed.iter().any(|range| range.contains(&at));
-            let mask = |byte: usize| if is_fixed(8 * k + byte) { 0xff } else { 0 };
-            let fixed = u64::from_ne_bytes([0, 1, 2, 3, 4, 5, 6, 7].map(mask));
-            *word = Word { bits: u64::from_ne_bytes(*bytes) & fixed, fixed };
+            let byte = |byte: usize| if is_fixed(8 * k + byte) { 0xff } else { 0 };
+            *mask = u64::from_ne_bytes([0, 1, 2, 3, 4, 5, 6, 7].map(byte));
+            *bits = u64::from_ne_bytes(*bytes) & *mask;
         }
-        Some(Self { len: record.len(), words })
+        Some(Self { len: record.len(), bits, fixed: masks })
     }
 
     /// Length of the whole record.
@@ -51,8 +47,9 @@ impl Shape {
     pub fn next<'a>(&self, bytes: &'a [u8]) -> Option<&'a [u8]> {
         let record = bytes.get(..self.len)?;
         let head = record.first_chunk::<LONGEST>()?.as_chunks().0;
-        let other = self.words.iter().zip(head).fold(0, |other, (word, bytes)| {
-            other | ((u64::from_ne_bytes(*bytes) ^ word.bits) & word.fixed)
+        let fixed = self.bits.iter().zip(&self.fixed);
+        let other = fixed.zip(head).fold(0, |other, ((bits, fixed), bytes)| {
+            other | ((u64::from_ne_bytes(*bytes) ^ bits) & fixed)
         });
         (other == 0).then_some(record)
     }

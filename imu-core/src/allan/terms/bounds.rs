@@ -5,7 +5,7 @@
 
 use super::super::Parameter;
 use super::super::fit::{INTERVAL, UPPER};
-use super::descent::{Best, FLOOR, descend, floor};
+use super::descent::{Best, EXACT, FLOOR, descend, floor};
 use super::joint::{Joint, Logs};
 use super::model::{TERMS, WALK, WHITE};
 
@@ -58,7 +58,7 @@ impl Profile<'_> {
         if let Some(Some(log)) = start.get_mut(self.term) {
             *log = to;
         }
-        let found = descend(self.joint, start, Some(self.term));
+        let found = descend(self.joint, start, Some(self.term), EXACT);
         ((found.minimum - self.best.minimum).max(0.0), found.logs)
     }
 

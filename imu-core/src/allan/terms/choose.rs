@@ -4,7 +4,7 @@
 //! there is none. A term that a later one has made superfluous goes again.
 
 use super::super::Difference;
-use super::descent::{Best, descend, floor};
+use super::descent::{Best, EXACT, ROUGH, descend, floor};
 use super::joint::{Joint, Logs};
 use super::model::{FLICKER, QUANTISATION, RAMP, TERMS, WALK, WHITE};
 use super::short;
@@ -21,8 +21,11 @@ pub(super) struct Model {
     pub contradiction: Option<Contradiction>,
 }
 
-/// The best fit with `term` added to the one of `logs`.
-pub(super) fn with(joint: &Joint, logs: &Logs, term: usize) -> Best {
+/// A statistic this far below its critical value when [`ROUGH`]ly known does not get there.
+const HOPELESS: f64 = 2.0;
+
+/// The best fit with `term` added to the one of `logs`; no step follows one that gains less than `enough`.
+pub(super) fn with(joint: &Joint, logs: &Logs, term: usize, enough: f64) -> Best {
     let largest = joint.largest().map(libm::log);
     let mut lifted = *logs;
     // What was not needed may be so beside the new term.
@@ -41,7 +44,7 @@ pub(super) fn with(joint: &Joint, logs: &Logs, term: usize) -> Best {
             (start, least) = (trial, minimum);
         }
     }
-    descend(joint, start, None)
+    descend(joint, start, None, enough)
 }
 
 /// The fit of N and K and of `added`, starting from values of N and K (0: not known).
@@ -58,9 +61,9 @@ pub(super) fn fit(
             *slot = Some(log);
         }
     }
-    let mut best = descend(joint, logs, None);
+    let mut best = descend(joint, logs, None, EXACT);
     for (term, _) in added.iter().enumerate().filter(|(_, added)| **added) {
-        best = with(joint, &best.logs, term);
+        best = with(joint, &best.logs, term, EXACT);
     }
     best
 }
@@ -91,7 +94,7 @@ pub(super) fn choose(all: &Joint, base: Model, critical: f64) -> Model {
             if set.iter().any(|term| known(term) || (blind && *term == RAMP)) {
                 continue;
             }
-            let Some((statistic, with)) = candidate(all, &model, set) else { continue };
+            let Some((statistic, with)) = candidate(all, &model, set, critical) else { continue };
             let ratio = statistic / (critical * set.len() as f64);
             if ratio > found.as_ref().map_or(1.0, |f| f.0) {
                 found = Some((ratio, with));
@@ -113,8 +116,9 @@ pub(super) fn is_misfit(all: &Joint, model: &Model) -> bool {
     model.best.residual > n + 6.0 * libm::sqrt(2.0 * n)
 }
 
-/// The likelihood-ratio statistic of some terms, and the model with them.
-fn candidate(all: &Joint, model: &Model, terms: &[usize]) -> Option<(f64, Model)> {
+/// The likelihood-ratio statistic of some terms, and the model with them; `None` where the statistic is not beyond
+/// `critical` times their number.
+fn candidate(all: &Joint, model: &Model, terms: &[usize], critical: f64) -> Option<(f64, Model)> {
     let mut joint = *all;
     let mut contradiction = model.contradiction;
     // A quantised integral shows at the shortest τ, and makes it larger; what is of this slope elsewhere is a
@@ -123,9 +127,15 @@ fn candidate(all: &Joint, model: &Model, terms: &[usize]) -> Option<(f64, Model)
         return None;
     }
     joint.0.from = model.from;
-    let added =
-        |joint: &Joint| terms.iter().fold(model.best, |best, term| with(joint, &best.logs, *term));
-    let (mut without, mut best) = (model.best, added(&joint));
+    let added = |joint: &Joint, enough| {
+        terms.iter().fold(model.best, |best, term| with(joint, &best.logs, *term, enough))
+    };
+    let (mut without, mut best) = (model.best, added(&joint, ROUGH));
+    let hopeless = without.minimum - best.minimum < critical * terms.len() as f64 - HOPELESS;
+    if hopeless && model.from <= all.0.from {
+        return None;
+    }
+    best = descend(&joint, best.logs, None, EXACT);
     if model.from > all.0.from {
         // Shorter octaves may contradict what lacks the terms, and not what has them.
         let found = short::contradiction(all, best.logs);
@@ -133,8 +143,8 @@ fn candidate(all: &Joint, model: &Model, terms: &[usize]) -> Option<(f64, Model)
         joint.0.from = from.min(model.from);
         if from < model.from {
             contradiction = found;
-            without = descend(&joint, model.best.logs, None);
-            best = added(&joint);
+            without = descend(&joint, model.best.logs, None, EXACT);
+            best = added(&joint, EXACT);
         }
     }
     if terms.contains(&QUANTISATION) && joint.0.from > 0 {
@@ -163,7 +173,7 @@ fn without_superfluous(all: &Joint, mut model: Model, critical: f64) -> Model {
         if let Some(log) = logs.get_mut(term) {
             *log = None;
         }
-        let without = descend(&joint, logs, None);
+        let without = descend(&joint, logs, None, EXACT);
         if without.minimum - model.best.minimum < critical {
             model.best = without;
         }

@@ -16,6 +16,11 @@ pub(super) const FLOOR: f64 = -16.118_095_650_958_32;
 const LONGEST: f64 = 2.5;
 /// Steps at most.
 const STEPS: u32 = 60;
+/// A step that gains less of −2 ln likelihood is the last: by then a value is within a few thousandths of its
+/// standard deviation of the best.
+pub(super) const EXACT: f64 = 1e-5;
+/// The same where the question is whether anything is to be gained at all.
+pub(super) const ROUGH: f64 = 0.2;
 
 /// The best values found.
 #[derive(Clone, Copy, Debug)]
@@ -31,8 +36,9 @@ pub(super) fn floor(joint: &Joint, term: usize) -> f64 {
     joint.largest().get(term).map_or(0.0, |most| libm::log(*most) + FLOOR)
 }
 
-/// The best values near `start`, of the terms that are in it but for `fixed`.
-pub(super) fn descend(joint: &Joint, start: Logs, fixed: Option<usize>) -> Best {
+/// The best values near `start`, of the terms that are in it but for `fixed`; no step follows one that gains less than
+/// `enough`.
+pub(super) fn descend(joint: &Joint, start: Logs, fixed: Option<usize>, enough: f64) -> Best {
     let floors = joint.largest().map(|most| libm::log(most) + FLOOR);
     let mut logs = start;
     for (index, (log, floor)) in logs.iter_mut().zip(floors).enumerate() {
@@ -71,7 +77,7 @@ pub(super) fn descend(joint: &Joint, start: Logs, fixed: Option<usize>) -> Best 
         matrix = [[0.0; TERMS]; TERMS];
         at = joint.at(&logs, Some(&mut matrix));
         damping = damping.max(1e-9);
-        if longest < 1e-5 || gain < 1e-7 {
+        if longest < 1e-5 || gain < enough {
             break;
         }
     }

@@ -44,7 +44,7 @@ mod spread;
 use super::likelihood::Likelihood;
 use super::{Contradiction, NoiseFit, Octave, Parameter, Sampling, fit_noise, fit_noise_from};
 use choose::Model;
-use descent::Best;
+use descent::{Best, EXACT};
 use joint::{Joint, Logs};
 use model::{FLICKER, PerTerm, QUANTISATION, RAMP, TERMS, WALK, WHITE, of_ones};
 
@@ -247,7 +247,7 @@ pub fn likelihood_ratio(
     let mut more_best = fewer;
     for (term, added) in possible(more, sampling).added().into_iter().enumerate() {
         if added && more_best.logs.get(term).copied().flatten().is_none() {
-            more_best = choose::with(&all, &more_best.logs, term);
+            more_best = choose::with(&all, &more_best.logs, term, EXACT);
         }
     }
     (fewer.minimum - more_best.minimum).max(0.0)

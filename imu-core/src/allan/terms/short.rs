@@ -1,7 +1,7 @@
 //! Which short averaging times lie, whatever the terms: [`super::super::scan`], for a model of more than N and K.
 
 use super::super::scan::{CONTRADICTS, Contradiction, MARGIN, SCAN_FROM, short_are_white};
-use super::descent::{Best, descend};
+use super::descent::{Best, EXACT, descend};
 use super::joint::{Joint, Logs};
 
 /// Looks for short octaves that contradict the longer ones under a model, whose values are sought from `start` on.
@@ -13,10 +13,10 @@ pub(super) fn contradiction(all: &Joint, start: Logs) -> Option<Contradiction> {
     if joint.count() == 0 {
         return None;
     }
-    let mut longer = descend(&joint, start, None);
+    let mut longer = descend(&joint, start, None, EXACT);
     for octave in (all.0.from..first).rev() {
         joint.0.from = octave;
-        let with = descend(&joint, longer.logs, None);
+        let with = descend(&joint, longer.logs, None, EXACT);
         if contradicts(&with, &longer) {
             if short_are_white(&all.0) {
                 return None;
@@ -26,7 +26,7 @@ pub(super) fn contradiction(all: &Joint, start: Logs) -> Option<Contradiction> {
             let mut shorter = joint;
             shorter.0.from = octave.saturating_sub(1);
             shorter.0.without = Some(octave);
-            if octave == 0 || contradicts(&descend(&shorter, longer.logs, None), &longer) {
+            if octave == 0 || contradicts(&descend(&shorter, longer.logs, None, EXACT), &longer) {
                 let octave = (octave + MARGIN).min(first.saturating_sub(1));
                 return Some(Contradiction { octave, sigmas });
             }

@@ -76,15 +76,24 @@ pub struct Grid {
     points: u64,
     /// Exponential mean of errors, ns.
     slow: f64,
-    /// Exponential mean of squared errors, ns².
+    /// Exponential mean of squared errors, ns²: without those of `recent`.
     jitter: f64,
     /// Exponential mean of whether a stamp is in its place.
     pub(super) in_place: f64,
-    /// What follows from period and jitter, and is computed anew now and then.
+    /// What follows from period and jitter.
     bounds: Bounds,
-    /// Sum of squared errors (ns²) and their number.
+    /// Since period, jitter and bounds were computed.
+    recent: Errors,
+    /// Sum of squared errors (ns²) of all before, and how many there are of all.
     squares: f64,
     accepted: u64,
+}
+
+/// The sum of errors (ns), as far as the grid follows them, and of their squares.
+#[derive(Clone, Copy, Debug, Default)]
+struct Errors {
+    sum: f64,
+    squares: f64,
 }
 
 /// Limits of errors in ns, and how fast the grid follows.
@@ -99,7 +108,7 @@ struct Bounds {
 }
 
 impl Bounds {
-    /// They are computed anew after so many samples.
+    /// They, period and jitter are computed anew after so many samples.
     const EVERY: u64 = 64;
 
     fn of(period: f64, jitter: f64) -> Self {
@@ -132,6 +141,7 @@ impl Grid {
             jitter,
             in_place,
             bounds: Bounds::of(period, jitter),
+            recent: Errors::default(),
             squares: 0.0,
             accepted: 0,
         }
@@ -153,7 +163,7 @@ impl Grid {
     /// slow mean shows to be missing before it.
     #[inline]
     pub fn accept(&mut self, error: f64) -> u64 {
-        let Bounds { widest, usual, slip, phase_gain, period_gain, .. } = self.bounds;
+        let Bounds { widest, usual, slip, phase_gain, .. } = self.bounds;
         let (mut wide, mut error) = (error, error);
         let near = self.near(error);
         self.in_place += (f64::from(u8::from(near)) - self.in_place) * (1.0 / JITTER);
@@ -161,15 +171,14 @@ impl Grid {
             wide = wide.clamp(-widest, widest);
             error = error.clamp(-usual, usual);
         }
-        self.squares += wide * wide;
-        self.jitter += (wide * wide - self.jitter) * (1.0 / JITTER);
+        self.recent.sum += error;
+        self.recent.squares += wide * wide;
         self.slow += (error - self.slow) * (1.0 / SLOW);
-        self.next += self.period + phase_gain * error;
-        self.period += period_gain * error;
+        self.next = (self.next + self.period) + phase_gain * error;
         self.points += 1;
         self.accepted += 1;
         if self.accepted.is_multiple_of(Bounds::EVERY) {
-            self.bounds = Bounds::of(self.period, self.jitter);
+            self.learn();
         }
         if self.slow.abs() > slip { self.slipped() } else { 0 }
     }
@@ -180,9 +189,8 @@ impl Grid {
     pub fn follow(&mut self, samples: &[Sample], mut last_ns: i64) -> usize {
         let mut taken = 0;
         loop {
-            let Bounds { near, slip, phase_gain, period_gain, .. } = self.bounds;
-            let Self { origin, mut next, mut period, mut squares, mut jitter, mut slow, .. } =
-                *self;
+            let Bounds { near, slip, phase_gain, .. } = self.bounds;
+            let Self { origin, mut next, period, mut recent, mut slow, .. } = *self;
             let to_bounds = Bounds::EVERY - self.accepted % Bounds::EVERY;
             let mut followed = 0;
             for sample in samples.iter().skip(taken).take(to_bounds as usize) {
@@ -193,14 +201,13 @@ impl Grid {
                     break;
                 }
                 last_ns = sample.stamp_ns;
+                recent.sum += error;
+                recent.squares += error * error;
                 slow = slower;
-                squares += error * error;
-                jitter += (error * error - jitter) * (1.0 / JITTER);
-                next += period + phase_gain * error;
-                period += period_gain * error;
+                next = (next + period) + phase_gain * error;
                 followed += 1;
             }
-            *self = Self { next, period, squares, jitter, slow, ..self.clone() };
+            *self = Self { next, recent, slow, ..self.clone() };
             // As of each by itself, to first order.
             self.in_place += (1.0 - self.in_place) * (followed as f64 / JITTER);
             self.points += followed;
@@ -209,8 +216,18 @@ impl Grid {
             if followed < to_bounds {
                 return taken;
             }
-            self.bounds = Bounds::of(period, jitter);
+            self.learn();
         }
+    }
+
+    /// What the recent errors, [`Bounds::EVERY`] of them, say of period and jitter.
+    fn learn(&mut self) {
+        const EVERY: f64 = Bounds::EVERY as f64;
+        let Errors { sum, squares } = std::mem::take(&mut self.recent);
+        self.period += self.bounds.period_gain * sum;
+        self.jitter += (squares / EVERY - self.jitter) * (EVERY / JITTER);
+        self.squares += squares;
+        self.bounds = Bounds::of(self.period, self.jitter);
     }
 
     /// The slow mean is away by a sample: one is missing, or the clock was adjusted.
@@ -322,7 +339,7 @@ impl Grid {
 
     /// Sum of squared errors, ns², and how many there were.
     pub fn squared_errors(&self) -> (f64, u64) {
-        (self.squares, self.accepted)
+        (self.squares + self.recent.squares, self.accepted)
     }
 
     /// Nanoseconds between samples.
