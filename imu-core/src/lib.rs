@@ -11,6 +11,7 @@ pub mod noise;
 mod resonator;
 mod scalar;
 pub mod sensor;
+pub mod so3;
 pub mod trajectory;
 
 pub use error::Error;

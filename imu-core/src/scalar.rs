@@ -79,6 +79,8 @@ pub trait Real:
     fn round_ties_even(self) -> Self;
     /// Sine and cosine of an angle in radians, within 1 unit in the last place (`libm`).
     fn sin_cos(self) -> (Self, Self);
+    /// The angle of the point (`x`, `self`) in radians, −π to π, within 1 unit in the last place (`libm`).
+    fn atan2(self, x: Self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// The bits of its IEEE 754 form, the lower 32 for an `f32`.
@@ -89,7 +91,7 @@ pub trait Real:
 
 macro_rules! real {
     ($T:ident, $Total:ty, $limit:literal, $sqrt:path, $expm1:path, $rint:path,
-     $sincos:path) => {
+     $sincos:path, $atan2:path) => {
         impl Real for $T {
             type Total = $Total;
 
@@ -135,6 +137,10 @@ macro_rules! real {
             fn sin_cos(self) -> (Self, Self) {
                 $sincos(self)
             }
+            #[inline]
+            fn atan2(self, x: Self) -> Self {
+                $atan2(self, x)
+            }
             #[inline(always)]
             fn is_finite(self) -> bool {
                 $T::is_finite(self)
@@ -151,8 +157,8 @@ macro_rules! real {
     };
 }
 
-real!(f32, TwoStage, 1e12, libm::sqrtf, libm::expm1f, libm::rintf, libm::sincosf);
-real!(f64, f64, 1e100, libm::sqrt, libm::expm1, libm::rint, libm::sincos);
+real!(f32, TwoStage, 1e12, libm::sqrtf, libm::expm1f, libm::rintf, libm::sincosf, libm::atan2f);
+real!(f64, f64, 1e100, libm::sqrt, libm::expm1, libm::rint, libm::sincos, libm::atan2);
 
 #[cfg(test)]
 mod tests {

@@ -18,6 +18,7 @@ mod noise;
 mod scalar;
 mod sensor;
 pub mod single;
+mod so3;
 mod term_fit;
 mod terms;
 mod trajectory;
@@ -73,6 +74,8 @@ pub const CASES: &[Case] = &[
     Case { name: "sensor f64", run: sensor::case::<f64> },
     Case { name: "sensor steps f32", run: sensor::cost::<f32> },
     Case { name: "sensor steps f64", run: sensor::cost::<f64> },
+    Case { name: "so3 f32", run: so3::case::<f32> },
+    Case { name: "so3 f64", run: so3::case::<f64> },
     Case { name: "trajectory f32", run: trajectory::case::<f32> },
     Case { name: "trajectory f64", run: trajectory::case::<f64> },
     Case { name: "Allan f32 1", run: ladder::bits::<f32, 1, 1> },
