@@ -2,9 +2,10 @@
 
 use imu_core::allan::{Octave, Parameter};
 
-use super::verdict::{Inflation, walk_for_filter};
+use super::verdict::{Inflation, NextRecord, walk_for_filter};
 use super::{AxisNoise, Deviation, SensorNoise, Stretch};
 use crate::recording::Summary;
+use crate::report::Quantity;
 use crate::scene::display_duration;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -54,7 +55,7 @@ fn of_rest(to: &mut Vec<String>, sensor: &SensorNoise, keep_all: bool) {
         let what = if keep_all {
             "kept, because --keep-all is given, and read as random walk: K is too large"
         } else {
-            "they decide nothing about K (--keep-all would let them)"
+            "not used for K (--keep-all would use it)"
         };
         let (length, how) = if warm_up_s < SHORT_S {
             (
@@ -140,8 +141,8 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
         let longest = sensor.deviation.get(contradiction.octave).map_or(0.0, |d| d.tau_s);
         let sigmas = contradiction.sigmas;
         let decide = format!(
-            "averaging times up to {longest:.3} s decide nothing: they contradict the longer ones by \
-             {sigmas:.0} standard deviations"
+            "averaging times up to {longest:.3} s are not used for the fit: they contradict the longer ones \
+             by {sigmas:.0} standard deviations"
         );
         to.push(match motion(sensor, contradiction.octave) {
             Some((times, tau_s)) => format!(
@@ -159,11 +160,11 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
         ));
     }
     if let Some(Parameter::Observable { .. }) = sensor.pooled.bias_instability {
-        let unit = sensor.kind.unit();
+        let unit = Quantity::RandomWalk(sensor.kind).unit();
         let walk = walk_for_filter(&sensor.pooled).unwrap_or_default();
         to.push(format!(
             "there is flicker (bias instability B): K stands beside it, and is known less well than alone; \
-             for a filter that has no flicker, {walk:.2e} {unit}/s/√Hz goes as far in {:.0} s as B and K \
+             for a filter that has no flicker, {walk:.2e} {unit} goes as far in {:.0} s as B and K \
              together, and is what files for filters hold",
             Inflation::OVER_S
         ));
@@ -174,14 +175,14 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
              take each axis by itself"
         ));
     }
-    if let Parameter::NotObservable { upper90, record_at_least_s } = sensor.pooled.random_walk
+    if let Parameter::NotObservable { upper90, .. } = sensor.pooled.random_walk
         && upper90.is_finite()
     {
-        to.push(format!(
-            "the record is too short to show the random walk of the bias; record at least {}, better \
-             for hours",
-            seconds(record_at_least_s)
-        ));
+        let next = match NextRecord::of(sensor) {
+            NextRecord::AtLeast(wanted_s) => format!("; record at least {}", seconds(wanted_s)),
+            _ => String::new(),
+        };
+        to.push(format!("the record is too short to show the random walk of the bias{next}"));
     }
 }
 

@@ -41,7 +41,7 @@ impl Known {
     }
 }
 
-/// Named classes of sensors, by their white noise at rest.
+/// Named classes of sensors, by one number of theirs at rest: white noise, or bias instability.
 ///
 /// Borders between such classes are customary and not sharp: those of the gyroscope lie between the
 /// values of table 1 in El-Sheimy & Youssef (2020), *Inertial sensors technologies for navigation
@@ -56,7 +56,7 @@ pub enum Grade {
     Industrial,
     /// Telephones, toys, cameras.
     Consumer,
-    /// Noisier than sensors that are sold: shaken, badly set, or simulated.
+    /// Noisier than consumer sensors usually are.
     Beyond,
 }
 
@@ -64,32 +64,119 @@ impl Grade {
     const ALL: [Self; 5] =
         [Self::Navigation, Self::Tactical, Self::Industrial, Self::Consumer, Self::Beyond];
 
-    /// The largest white noise of each grade but the last: °/√h, or µg/√Hz.
     const GYROSCOPE: [f64; 4] = [0.005, 0.1, 0.5, 5.0];
     const ACCELEROMETER: [f64; 4] = [15.0, 50.0, 120.0, 500.0];
 
     /// The grade of white noise N, in the unit of datasheets (°/√h or µg/√Hz).
     #[must_use]
     pub fn of(kind: SensorKind, density: f64) -> Self {
-        let borders = match kind {
+        Self::among(Self::borders(kind), density)
+    }
+
+    /// The largest white noise of each grade but the last, in the same unit.
+    #[must_use]
+    pub const fn borders(kind: SensorKind) -> [f64; 4] {
+        match kind {
             SensorKind::Gyroscope => Self::GYROSCOPE,
             SensorKind::Accelerometer => Self::ACCELEROMETER,
-        };
-        let class = borders.iter().take_while(|border| density > **border).count();
+        }
+    }
+
+    /// The grade of a gyroscope's bias instability, °/h. The same table has no such number of accelerometers,
+    /// but the constant bias, which is far larger.
+    #[must_use]
+    pub fn of_bias_instability(degrees_per_hour: f64) -> Self {
+        Self::among([0.1, 10.0, 60.0, 360.0], degrees_per_hour)
+    }
+
+    fn among(borders: [f64; 4], value: f64) -> Self {
+        let class = borders.iter().take_while(|border| value > **border).count();
         Self::ALL.get(class).copied().unwrap_or(Self::Beyond)
     }
 }
 
-/// How long a record must be for each axis to show K to 10 % (standard deviation), s: sd(ln K) is
-/// √(2N/(K T)) for white noise and a random walk. `None` where N or K is not known.
-#[must_use]
-pub fn record_for_walk_s(sensor: &SensorNoise) -> Option<f64> {
-    let value = |parameter| match parameter {
-        Parameter::Observable { value, .. } => Some(value),
-        Parameter::NotObservable { .. } => None,
+/// How long to record next time, so that each axis shows K to 10 % (one standard deviation).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NextRecord {
+    /// No longer than this one.
+    LongEnough,
+    /// At least so long, s, in round numbers.
+    AtLeast(f64),
+    /// A longer one shows little more of K, because flicker hides it.
+    HiddenByFlicker,
+    /// Too little is known to say.
+    Unknown,
+}
+
+impl NextRecord {
+    /// The advice for a sensor; all that speaks of the next record quotes it.
+    ///
+    /// sd(ln K) is √(2N/(K T)) for white noise and a random walk. In the place of a K that does not show
+    /// stands its bound: K lies below, and needs longer.
+    #[must_use]
+    pub fn of(sensor: &SensorNoise) -> Self {
+        if let Some(Parameter::Observable { .. }) = sensor.pooled.bias_instability {
+            return Self::HiddenByFlicker;
+        }
+        let Parameter::Observable { value: n, .. } = sensor.pooled.noise_density else {
+            return Self::Unknown;
+        };
+        let (k, earliest_s) = match sensor.pooled.random_walk {
+            Parameter::Observable { value, .. } => (value, 0.0),
+            Parameter::NotObservable { upper90, record_at_least_s } if upper90.is_finite() => {
+                (upper90, record_at_least_s)
+            }
+            Parameter::NotObservable { .. } => return Self::Unknown,
+        };
+        let wanted_s = (2.0 * n / (k * 0.1 * 0.1)).max(earliest_s);
+        match wanted_s {
+            wanted if !wanted.is_finite() => Self::Unknown,
+            wanted if wanted <= 1.05 * sensor.stamps.span_s => Self::LongEnough,
+            wanted => Self::AtLeast(round_up(wanted)),
+        }
+    }
+}
+
+/// Up to a length that a person would set, s: 5 min, half hours from one hour on, hours from ten on.
+fn round_up(seconds: f64) -> f64 {
+    let step = match seconds {
+        s if s < 3600.0 => 300.0,
+        s if s < 36_000.0 => 1800.0,
+        _ => 3600.0,
     };
-    let (n, k) = (value(sensor.pooled.noise_density)?, value(sensor.pooled.random_walk)?);
-    (k > 0.0).then(|| 2.0 * n / (k * 0.1 * 0.1))
+    (seconds / step).ceil() * step
+}
+
+/// How many times a pooled value a filter may need, by what its own numbers leave open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margin {
+    /// The upper end of the 90 % interval over the value.
+    pub interval: f64,
+    /// The largest value of an axis over the pooled one; 1 where no axis is above it.
+    pub axes: f64,
+}
+
+impl Margin {
+    /// That of a parameter of the axes and of all together; `None` where there is no value with an interval.
+    #[must_use]
+    pub fn of(axes: [Parameter; 3], pooled: Parameter) -> Option<Self> {
+        let Parameter::Observable { value, high90, .. } = pooled else { return None };
+        if !(high90.is_finite() && value > 0.0) {
+            return None;
+        }
+        let of_axis = |axis| match axis {
+            Parameter::Observable { value, .. } => value,
+            Parameter::NotObservable { .. } => 0.0,
+        };
+        let largest = axes.map(of_axis).into_iter().fold(value, f64::max);
+        Some(Self { interval: high90 / value, axes: largest / value })
+    }
+
+    /// The larger of the two.
+    #[must_use]
+    pub fn most(self) -> f64 {
+        self.interval.max(self.axes)
+    }
 }
 
 /// The random walk to give a filter that has no term for flicker, unit/s/√Hz: the K that makes the bias go as far in
@@ -162,6 +249,25 @@ mod tests {
         assert_eq!(Grade::of(Gyroscope, 51.6), Grade::Beyond);
         assert_eq!(Grade::of(Accelerometer, 220.0), Grade::Consumer);
         assert!(Grade::Navigation < Grade::Consumer);
+        assert_eq!(Grade::of_bias_instability(4.0), Grade::Tactical);
+        assert_eq!(Grade::of_bias_instability(1000.0), Grade::Beyond);
+    }
+
+    #[test]
+    fn lengths_are_round() {
+        for (seconds, round) in [(250.0, 300.0), (3601.0, 5400.0), (36_001.0, 39_600.0)] {
+            assert_eq!(round_up(seconds), round);
+        }
+    }
+
+    /// 1.5 of the interval; 1.2 of the axes, of which one does not show.
+    #[test]
+    fn margins() {
+        let known = |value, high90| Parameter::Observable { value, sd: 0.1, low90: 0.0, high90 };
+        let hidden = Parameter::NotObservable { upper90: 9.0, record_at_least_s: 1.0 };
+        let margin = Margin::of([known(0.9, 1.0), known(1.2, 1.3), hidden], known(1.0, 1.5));
+        assert_eq!(margin, Some(Margin { interval: 1.5, axes: 1.2 }));
+        assert_eq!(Margin::of([hidden; 3], hidden), None);
     }
 
     /// B = 1, K = 0.1: 0.01 + 3·0.4413/100 = 0.02324.

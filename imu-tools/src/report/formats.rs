@@ -34,6 +34,7 @@ impl Form {
         let sensors = Sensors {
             gyroscope: calibration.gyroscope.as_ref(),
             accelerometer: calibration.accelerometer.as_ref(),
+            warnings: super::yaml::warnings(calibration),
         };
         match self {
             Self::Kalibr => super::yaml::kalibr(calibration),
@@ -49,6 +50,8 @@ impl Form {
 struct Sensors<'a> {
     gyroscope: Option<&'a SensorNoise>,
     accelerometer: Option<&'a SensorNoise>,
+    /// As comments.
+    warnings: String,
 }
 
 /// A value, or its upper bound; what to remark about it.
@@ -86,6 +89,10 @@ impl Sensors<'_> {
         self.gyroscope.or(self.accelerometer).map_or(0.0, |sensor| sensor.stamps.rate_hz)
     }
 
+    fn topic(&self) -> String {
+        self.gyroscope.or(self.accelerometer).map_or_else(String::new, super::yaml::topic)
+    }
+
     fn vins(&self) -> String {
         let mut text = String::from(
             "# For VINS-Mono and VINS-Fusion, which take these as standard deviations of one sample:\n\
@@ -93,6 +100,8 @@ impl Sensors<'_> {
              # K sqrt(rate). They hold for this rate only.\n",
         );
         let _ = writeln!(text, "# rate: {:.3} Hz", self.rate_hz());
+        text.push_str(&self.warnings);
+        let _ = writeln!(text, "imu_topic: {}", self.topic());
         for sensor in self.each() {
             let (key, unit) = match sensor.kind {
                 SensorKind::Gyroscope => ("gyr", "rad/s"),
@@ -113,8 +122,10 @@ impl Sensors<'_> {
     fn open_vins(&self) -> String {
         let mut text = String::from(
             "%YAML:1.0\n# For OpenVINS (kalibr_imu_chain.yaml): continuous-time densities. \
-             T_i_b and time_offset are not\n# known from a record at rest.\nimu0:\n  T_i_b:\n",
+             T_i_b and time_offset are not\n# known from a record at rest: keep yours.\n",
         );
+        text.push_str(&self.warnings);
+        text.push_str("imu0:\n  T_i_b:\n");
         for row in 0..4 {
             let cells = (0..4).map(|column| if row == column { "1.0" } else { "0.0" });
             let _ = writeln!(text, "  - [{}]", cells.collect::<Vec<_>>().join(", "));
@@ -128,7 +139,8 @@ impl Sensors<'_> {
         }
         let _ = writeln!(
             text,
-            "  rostopic: /imu0\n  time_offset: 0.0\n  update_rate: {:.6}",
+            "  rostopic: {}\n  time_offset: 0.0\n  update_rate: {:.6}",
+            self.topic(),
             self.rate_hz()
         );
         text
@@ -138,6 +150,7 @@ impl Sensors<'_> {
         let mut text = String::from(
             "# For ORB-SLAM3: continuous-time densities; it multiplies by sqrt(IMU.Frequency) itself.\n",
         );
+        text.push_str(&self.warnings);
         for sensor in self.each() {
             let (noise_key, walk_key) = match sensor.kind {
                 SensorKind::Gyroscope => ("IMU.NoiseGyro", "IMU.GyroWalk"),
@@ -157,6 +170,7 @@ impl Sensors<'_> {
             "# For sensor_msgs/Imu: variances of one sample (x, y, z on the diagonal), row by row, as\n\
              # measured between neighbouring samples. The bias is not in them.\n",
         );
+        text.push_str(&self.warnings);
         for sensor in self.each() {
             let (key, unit) = match sensor.kind {
                 SensorKind::Gyroscope => ("angular_velocity_covariance", "(rad/s)^2"),
@@ -175,9 +189,10 @@ impl Sensors<'_> {
             "%YAML:1.0\n---\n\
              # As imu_utils writes it. _n: white noise of one sample, N sqrt(rate), for this rate only.\n\
              # _w is NOT a random walk, although it is named like one: it is the lowest Allan deviation,\n\
-             # sqrt(2 N K/sqrt(3)) without flicker. Who wants the random walk K takes --format vins, kalibr or orbslam3.\n\
-             type: IMU\nname: imu\n",
+             # sqrt(2 N K/sqrt(3)) without flicker. Who wants the random walk K takes --format vins, kalibr or orbslam3.\n",
         );
+        text.push_str(&self.warnings);
+        text.push_str("type: IMU\nname: imu\n");
         for sensor in [self.gyroscope, self.accelerometer].into_iter().flatten() {
             let (head, key, unit) = match sensor.kind {
                 SensorKind::Gyroscope => ("Gyr", "gyr", "rad/s"),
@@ -260,5 +275,25 @@ mod tests {
         // √(2NK/√3)
         close(Form::ImuUtils, "acc_w", (2.0 * 0.03 * 1e-3 / 3_f64.sqrt()).sqrt(), 0.3);
         assert!(Form::ImuUtils.write(&calibration).contains("NOT a random walk"));
+    }
+
+    #[test]
+    fn every_form_warns_and_names_the_topic() {
+        let mut calibration = calibration();
+        calibration.warnings = vec!["gyroscope: shaken\nall: the time".into()];
+        calibration.gyroscope.as_mut().unwrap().topic = "/imu/data".into();
+        for form in [
+            Form::Kalibr,
+            Form::ImuUtils,
+            Form::Vins,
+            Form::OpenVins,
+            Form::OrbSlam3,
+            Form::RosCovariance,
+        ] {
+            let text = form.write(&calibration);
+            assert!(text.contains("\n# Warning: gyroscope: shaken all: the time\n"), "{text}");
+        }
+        assert!(Form::OpenVins.write(&calibration).contains("  rostopic: \"/imu/data\"\n"));
+        assert!(Form::Vins.write(&calibration).contains("\nimu_topic: \"/imu/data\"\n"));
     }
 }

@@ -6,6 +6,7 @@ use imu_core::allan::Parameter;
 
 use super::Quantity;
 use super::json::AXES;
+use crate::calibrate::verdict::NextRecord;
 use crate::calibrate::{AxisNoise, Calibration, SensorNoise};
 use crate::scene::display_duration;
 
@@ -41,6 +42,10 @@ fn sensor(text: &mut String, sensor: &SensorNoise) {
     }
     for (quantity, of) in Quantity::fitted(sensor) {
         block(text, sensor, quantity, of);
+    }
+    if let NextRecord::AtLeast(wanted_s) = NextRecord::of(sensor) {
+        let _ =
+            writeln!(text, "  for K of each axis to 10 % record at least {}", duration(wanted_s));
     }
 }
 
@@ -78,12 +83,11 @@ fn block(
                 "    {name:<26}{value:>12.4e}    {low90:.4e} to {high90:.4e}      {}",
                 short(value * twin.per_si)
             ),
-            Parameter::NotObservable { upper90, record_at_least_s } => writeln!(
+            Parameter::NotObservable { upper90, .. } => writeln!(
                 text,
-                "    {name:<26}not observable: below {upper90:.2e} ({} {}); record at least {}",
+                "    {name:<26}not observable: below {upper90:.2e} ({} {})",
                 short(upper90 * twin.per_si),
-                twin.unit,
-                duration(record_at_least_s)
+                twin.unit
             ),
         };
     }

@@ -86,6 +86,21 @@ impl Quantity {
         }
     }
 
+    /// Further units that datasheets use for it.
+    #[must_use]
+    pub const fn further_twins(self) -> &'static [Twin] {
+        match self {
+            Self::NoiseDensity(SensorKind::Gyroscope) => &[
+                Twin { unit: "°/s/√Hz", per_si: DEGREES },
+                Twin { unit: "mdps/√Hz", per_si: DEGREES * 1000.0 },
+            ],
+            Self::NoiseDensity(SensorKind::Accelerometer) => {
+                &[Twin { unit: "m/s/√h", per_si: 60.0 }]
+            }
+            _ => &[],
+        }
+    }
+
     /// Its unit in datasheets: 1 rad/s/√Hz is 1 rad/√s = 60 rad/√h; a rate walks by K·√h in an hour.
     #[must_use]
     pub const fn twin(self) -> Twin {
@@ -133,6 +148,11 @@ mod tests {
         assert!((std::f64::consts::PI / 180.0 / 60.0 * gyro.per_si - 1.0).abs() < 1e-12);
         let accel = Quantity::NoiseDensity(SensorKind::Accelerometer).twin();
         assert!((9.806_65e-6 * accel.per_si - 1.0).abs() < 1e-12);
+        // 0.005 °/s/√Hz = 5 mdps/√Hz = 0.3 °/√h.
+        let n = 0.3 / gyro.per_si;
+        let further = Quantity::NoiseDensity(SensorKind::Gyroscope).further_twins();
+        assert!((n * further[0].per_si - 0.005).abs() < 1e-15);
+        assert!((n * further[1].per_si - 5.0).abs() < 1e-12);
         // K = 1 °/h/√h walks the rate by 1 °/h (4.848e-6 rad/s) in an hour: K·√3600 s.
         let walk = Quantity::RandomWalk(SensorKind::Gyroscope).twin();
         let k = 1.0 / walk.per_si;

@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 use imu_core::allan::Parameter;
 
 use super::Quantity;
+use super::table::duration;
 use super::table::short;
-use crate::calibrate::verdict::{Inflation, walk_for_filter};
+use crate::calibrate::verdict::{Inflation, NextRecord, walk_for_filter};
 use crate::calibrate::{Calibration, SensorKind, SensorNoise};
 
 /// The file, all axes of a sensor pooled. A parameter that the record cannot show has its upper
@@ -20,9 +21,7 @@ pub fn kalibr(calibration: &Calibration) -> String {
         one_line(&calibration.path),
         calibration.span_s
     );
-    for warning in &calibration.warnings {
-        let _ = writeln!(text, "# Warning: {}", one_line(warning));
-    }
+    text.push_str(&warnings(calibration));
     text.push('\n');
     let sensors = [
         (SensorKind::Accelerometer, &calibration.accelerometer),
@@ -37,15 +36,25 @@ pub fn kalibr(calibration: &Calibration) -> String {
         }
     }
     if let Some(sensor) = calibration.gyroscope.as_ref().or(calibration.accelerometer.as_ref()) {
-        // The columns of a CSV are no topic: no topic has a space in its name.
-        let (topic, remark) = match sensor.topic.contains(' ') {
-            true => ("/imu0", "  # the recording names no topic: put yours here"),
-            false => (sensor.topic.as_str(), ""),
-        };
-        let _ = writeln!(text, "\nrostopic: {}{remark}", quoted(topic));
+        let _ = writeln!(text, "\nrostopic: {}", topic(sensor));
         let _ = writeln!(text, "update_rate: {:.6}  # Hz", sensor.stamps.rate_hz);
     }
     text
+}
+
+/// The warnings of a calibration as comments: they touch whatever stands below them.
+pub(super) fn warnings(calibration: &Calibration) -> String {
+    let lines = calibration.warnings.iter();
+    lines.map(|warning| format!("# Warning: {}\n", one_line(warning))).collect()
+}
+
+/// The topic of a sensor in quotes; where the recording names none, `/imu0` and a remark.
+pub(super) fn topic(sensor: &SensorNoise) -> String {
+    // The columns of a CSV are no topic: no topic has a space in its name.
+    match sensor.topic.contains(' ') {
+        true => format!("{}  # the recording names no topic: put yours here", quoted("/imu0")),
+        false => quoted(&sensor.topic),
+    }
 }
 
 fn lines(text: &mut String, kind: SensorKind, sensor: &SensorNoise) {
@@ -77,10 +86,16 @@ fn lines(text: &mut String, kind: SensorKind, sensor: &SensorNoise) {
                 short(value * twin.per_si),
                 twin.unit
             ),
-            Parameter::NotObservable { upper90, record_at_least_s } if upper90.is_finite() => {
+            Parameter::NotObservable { upper90, .. } if upper90.is_finite() => {
+                let next = match NextRecord::of(sensor) {
+                    NextRecord::AtLeast(wanted_s) => {
+                        format!("; record at least {}", duration(wanted_s))
+                    }
+                    _ => String::new(),
+                };
                 format!(
                     "{name}_{key}: {upper90:.6e}  # {unit}; NOT OBSERVABLE in this record: this is \
-                     its upper 90 % bound; record at least {record_at_least_s:.0} s"
+                     its upper 90 % bound{next}"
                 )
             }
             Parameter::NotObservable { .. } => {

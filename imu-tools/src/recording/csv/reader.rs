@@ -39,8 +39,14 @@ impl CsvReader {
         let layout = Layout::find(input.at_hand(), input.path(), options)?;
         input.consume(layout.bytes_before);
         let names = |column: fn(u8) -> Column| {
-            let at = layout.columns.iter().position(|c| *c == column(0));
-            at.map_or_else(String::new, |at| format!("columns from {}", at + 1))
+            let at = |axis| layout.columns.iter().position(|c| *c == column(axis));
+            match [at(0), at(1), at(2)].map(|at| at.map(|at| at + 1)) {
+                [Some(x), Some(y), Some(z)] if y == x + 1 && z == y + 1 => {
+                    format!("columns {x} to {z}")
+                }
+                [Some(x), Some(y), Some(z)] => format!("columns {x}, {y} and {z}"),
+                _ => String::new(),
+            }
         };
         Ok(Self {
             input,

@@ -91,7 +91,7 @@ fn verdict(sensors: &[&SensorNoise]) -> Markup {
 fn warnings(calibration: &Calibration) -> Markup {
     html! {
         @if !calibration.warnings.is_empty() {
-            h2 { "What is to be known of this recording" }
+            h2 { "Warnings" }
             ul.warnings { @for warning in &calibration.warnings { li { (warning) } } }
         }
         @if !calibration.remarks.is_empty() {
@@ -118,27 +118,39 @@ fn numbers(sensor: &SensorNoise) -> Markup {
                             th { "axis" }
                             th { (quantity.unit()) }
                             th { "90 % interval" }
-                            th { (quantity.twin().unit) }
+                            @for twin in twins(quantity) { th { (twin.unit) } }
                         }
                     }
                     tbody {
                         @for (name, axis) in AXES.iter().zip(&sensor.axes) {
-                            @if let Some(found) = of(axis) { (row(name, found, quantity.twin())) }
-                            @else { tr { td { (name) } td { "not asked for" } td {} td {} } }
+                            (row(name, of(axis), quantity))
                         }
-                        @if let Some(found) = of(&sensor.pooled) {
-                            (row("all", found, quantity.twin()))
-                        } @else {
-                            tr.all { td { "all" } td { "not asked for" } td {} td {} }
-                        }
+                        (row("all", of(&sensor.pooled), quantity))
                     }
                 }
             }
         }
+        p { (words::datasheet(sensor)) }
     }
 }
 
-fn row(name: &str, parameter: Parameter, twin: Twin) -> Markup {
+/// All units that datasheets use for a parameter.
+fn twins(quantity: Quantity) -> impl Iterator<Item = Twin> {
+    [quantity.twin()].into_iter().chain(quantity.further_twins().iter().copied())
+}
+
+fn row(name: &str, parameter: Option<Parameter>, quantity: Quantity) -> Markup {
+    let twins = || twins(quantity);
+    let Some(parameter) = parameter else {
+        return html! {
+            tr.all[name == "all"] {
+                td { (name) }
+                td { "not asked for" }
+                td {}
+                @for _ in twins() { td {} }
+            }
+        };
+    };
     html! {
         tr.all[name == "all"] {
             td { (name) }
@@ -149,17 +161,17 @@ fn row(name: &str, parameter: Parameter, twin: Twin) -> Markup {
                         @if high90.is_finite() { (short(low90)) " to " (short(high90)) }
                         @else { "a reading, none" }
                     }
-                    td { (short(value * twin.per_si)) }
+                    @for twin in twins() { td { (short(value * twin.per_si)) } }
                 }
                 Parameter::NotObservable { upper90, .. } if upper90.is_finite() => {
                     td { "not observable" }
                     td { "below " (short(upper90)) }
-                    td { "below " (short(upper90 * twin.per_si)) }
+                    @for twin in twins() { td { "below " (short(upper90 * twin.per_si)) } }
                 }
                 Parameter::NotObservable { .. } => {
                     td { "not observable" }
                     td { "nothing is known" }
-                    td { "–" }
+                    @for _ in twins() { td { "–" } }
                 }
             }
         }
@@ -180,6 +192,7 @@ fn picture(figure: &Figure, caption: &str) -> Markup {
         @if !figure.is_empty() {
             figure {
                 div.plot { (PreEscaped(figure.inline())) }
+                div.keys { @for key in figure.keys() { (PreEscaped(key)) } }
                 figcaption { (caption) }
             }
         }
@@ -196,15 +209,44 @@ fn filters(calibration: &Calibration, sensors: &[&SensorNoise]) -> Markup {
     ];
     html! {
         h2 { "What to put into your filter" }
-        p { (words::WHY_MORE) }
-        ul { @for sentence in words::inflation(sensors) { li { (sentence) } } }
+        p { (words::HERE) }
+        div.wide {
+            table {
+                thead {
+                    tr {
+                        th {}
+                        th { "upper end of its 90 % interval" }
+                        th { "noisiest axis" }
+                        th { "seen beside it" }
+                        th { "at least" }
+                    }
+                }
+                tbody {
+                    @for row in sensors.iter().flat_map(|sensor| words::margins(sensor)) {
+                        tr { @for cell in row { td { (cell) } } }
+                    }
+                }
+            }
+        }
+        p { "What was found beside white noise and a random walk:" }
+        ul {
+            @for sensor in sensors {
+                @for sentence in words::found(sensor, warned(calibration, sensor)) { li { (sentence) } }
+            }
+        }
+        p { (words::NOT_KNOWABLE) }
         @for (program, file, form) in forms {
-            details {
+            details open {
                 summary { (program) " (" (file) ")" }
                 pre { (form.write(calibration)) }
             }
         }
     }
+}
+
+/// Whether a warning speaks of a sensor.
+fn warned(calibration: &Calibration, sensor: &SensorNoise) -> bool {
+    calibration.warnings.iter().any(|warning| warning.starts_with(sensor.kind.name()))
 }
 
 /// A span of time as words.

@@ -3,34 +3,43 @@
 use imu_core::allan::Parameter;
 
 use super::span;
-use crate::calibrate::verdict::{Grade, Inflation, Known, record_for_walk_s, walk_for_filter};
+use crate::calibrate::verdict::{Grade, Inflation, Known, Margin, NextRecord, walk_for_filter};
 use crate::calibrate::{AxisNoise, Calibration, SensorKind, SensorNoise};
 use crate::report::Quantity;
+use crate::report::json::AXES;
+use crate::report::plot::lowest;
 use crate::report::table::short;
 
 pub(super) const ALLAN: &str = "Average the signal over blocks of τ seconds: the Allan deviation is how much neighbouring blocks \
      differ. On the left it falls, as white noise averages out (slope −½); on the right it rises, as \
-     the bias walks away (slope +½). Dots are measured, bands are their 90 % intervals, the thick \
-     line is the fit, dashed lines are its terms. Circles: N is the dashed line of white noise \
-     read at 1 s, K that of the random walk read at 3 s, and one is the lowest point of the \
-     fit, often called bias instability: averaging longer than that makes a bias worse, not better. \
-     (The B of a fit is 1/0.664 of a flat that white noise and walk do not explain.) \
-     Grey averaging times decided nothing.";
+     the bias walks away (slope +½). Dots are measured, bands are their 90 % intervals. The thick \
+     line is the fit of all three axes together (the row “all” of the tables), dashed lines are its \
+     terms. Circles: N is the dashed line of white noise read at 1 s, K that of the random walk read at \
+     3 s; the lowest point of the fit, where the recording reaches it, is often called bias \
+     instability. (The B of a fit is 1/0.664 of a flat that white noise and walk do not explain.) \
+     Violet averaging times, if there are any, were not used for the fit.";
 
-pub(super) const RESIDUAL: &str = "Measured over fitted: where the bars (90 % intervals) touch 1, the fitted terms \
-     explain the sensor. Of ten bars one may miss it by chance. Below 1 on the left: a low-pass \
-     filter. Above 1 in the middle or on the right: bias instability, drift, temperature or motion.";
+pub(super) const RESIDUAL: &str = "Measured over fitted, a number without a unit. Each axis is divided by its own fit (the rows x, y \
+     and z of the tables), not by the line of all axes that is drawn above. Where the bars (90 % \
+     intervals) touch 1, the fit explains the sensor; of ten bars one may miss it by chance. Below 1 on \
+     the left: a low-pass filter. Above 1 on the right: drift, temperature or motion. Above 1 in the \
+     middle and below it on the right: flicker (bias instability) that was not fitted.";
 
-pub(super) const SIGNAL: &str = "The signal about its mean: the band is its range, the line its mean. Grey was left out, because \
-     the sensor was moved or touched; yellow warmed up, and decided nothing about K.";
+pub(super) const SIGNAL: &str = "The signal about its mean: the band is its range, the line its mean. Where the bands of the axes lie \
+     on each other they look grey. Violet, if there is any, was found to be moved, touched or frozen; \
+     in yellow the sensor warmed up. What was done about it is among the warnings.";
 
-pub(super) const WHY_MORE: &str = "The numbers above are those of the sensor at rest, at the temperature of this recording. In \
-     motion a filter sees more: errors of scale and alignment (half a per cent of 1 rad/s is \
-     0.005 rad/s), vibration, stamps that are off, and a bias that follows temperature. That is why \
-     people multiply the numbers by 2 to 10, and N of cheap sensors on shaking machines by more. Take \
-     the numbers as they are where the motion is gentle and the filter estimates what else there is; \
-     raise them until its innovations are as large as it says they are. What this recording itself \
-     shows beyond N and K:";
+pub(super) const HERE: &str = "The factors in this table are what this recording itself asks for: how much larger the true value may \
+     be, how much noisier the noisiest axis is than all together, and what else was seen. The filter’s \
+     value should be at least the last column times the value in the blocks below.";
+
+pub(super) const NOT_KNOWABLE: &str = "No recording at rest can tell what comes on top in use: vibration, a bias that follows temperature, \
+     errors of scale and alignment (half a per cent of 1 rad/s is 0.005 rad/s), and time stamps that are \
+     off. It is customary to multiply both N and K by 2 (gentle motion, a warm sensor) to 10 (a cheap \
+     sensor on a drone or an engine). The reason: with numbers that are too large a filter is a \
+     little less accurate than it might be; with numbers that are too small it trusts errors and may \
+     diverge. If your filter shows its innovations (measured minus predicted), raise the factor until \
+     they are no larger than the filter expects.";
 
 /// The first letter in upper case.
 pub(super) fn capital(text: &str) -> String {
@@ -43,7 +52,7 @@ pub(super) fn recorded(calibration: &Calibration) -> String {
     format!("{}, {} long.", calibration.path, span(calibration.span_s))
 }
 
-/// Samples, rate, losses, and the averaging times that decided.
+/// Samples, rate, losses, and the averaging times of the fit.
 pub(super) fn sampling(sensor: &SensorNoise) -> String {
     let stamps = &sensor.stamps;
     let lost = match stamps.missing {
@@ -51,7 +60,11 @@ pub(super) fn sampling(sensor: &SensorNoise) -> String {
         n => format!("{n} missing in {} gaps", stamps.gap_count),
     };
     let used = sensor.tau_used_s.map_or_else(String::new, |(first, last)| {
-        format!(" Averaging times from {} to {} s decided.", short(first), short(last))
+        format!(
+            " Averaging times from {} to {} s were used for the fit.",
+            short(first),
+            short(last)
+        )
     });
     let rate =
         if stamps.rate_hz > 0.0 { format!(" at {:.3} Hz", stamps.rate_hz) } else { String::new() };
@@ -60,9 +73,11 @@ pub(super) fn sampling(sensor: &SensorNoise) -> String {
 
 /// What the number means, in the sensor's terms.
 pub(super) fn meaning(quantity: Quantity, pooled: Parameter, noise: &AxisNoise) -> String {
-    let value = match pooled {
-        Parameter::Observable { value, .. } => value,
-        Parameter::NotObservable { upper90, .. } if upper90.is_finite() => upper90,
+    let (value, by) = match pooled {
+        Parameter::Observable { value, .. } => (value, "by"),
+        Parameter::NotObservable { upper90, .. } if upper90.is_finite() => {
+            (upper90, "by less than")
+        }
         Parameter::NotObservable { .. } => {
             return "Too little was recorded to say anything of it.".into();
         }
@@ -109,13 +124,13 @@ pub(super) fn meaning(quantity: Quantity, pooled: Parameter, noise: &AxisNoise) 
             short(value * 60_f64.sqrt())
         ),
         Quantity::RandomWalk(SensorKind::Gyroscope) => walk(format!(
-            "How the bias wanders: by {} °/s in a minute and {} °/s in an hour (one standard \
+            "How the bias wanders: {by} {} °/s in a minute and {} °/s in an hour (one standard \
              deviation).",
             short((value * 60_f64.sqrt()).to_degrees()),
             short((value * 60.0).to_degrees())
         )),
         Quantity::RandomWalk(SensorKind::Accelerometer) => walk(format!(
-            "How the bias wanders: by {} m/s² in a minute and {} m/s² in an hour (one standard \
+            "How the bias wanders: {by} {} m/s² in a minute and {} m/s² in an hour (one standard \
              deviation).",
             short(value * 60_f64.sqrt()),
             short(value * 60.0)
@@ -133,42 +148,93 @@ pub(super) fn verdict(sensor: &SensorNoise) -> String {
         Known::Reading => "White noise is a reading off a line, without an interval.".into(),
         Known::NotAtAll => "Nothing is known of white noise.".into(),
     };
-    let k = match Known::of(sensor.pooled.random_walk) {
-        Known::Well(half) => format!("The walk of the bias is known well, to {}.", percent(half)),
-        Known::Fairly(half) => {
-            format!("The walk of the bias is known to {}: good enough for a filter.", percent(half))
-        }
-        Known::Roughly(half) => format!(
-            "The walk of the bias is known only to {}: right in its order of magnitude; record longer.",
-            percent(half)
-        ),
-        Known::Below(_) => {
-            "The walk of the bias does not show in a record of this length; the bound below which it \
-             lies is safe to use."
-                .into()
-        }
-        Known::Reading => "The walk of the bias is a reading off a line, without an interval.".into(),
-        Known::NotAtAll => "Nothing is known of the walk of the bias: record longer.".into(),
-    };
-    let beyond = if sensor.misfit.contains(&true) {
-        " There is more in the signal than what was fitted: take K for an upper limit."
-    } else {
-        ""
-    };
-    let grade = match sensor.pooled.noise_density {
-        Parameter::Observable { value, .. } => {
-            let twin = Quantity::NoiseDensity(sensor.kind).twin();
-            let density = value * twin.per_si;
+    format!("{n} {}{}{}", walk(sensor), grade_by_noise(sensor), grade_by_bias(sensor))
+}
+
+/// How well K is known.
+fn walk(sensor: &SensorNoise) -> String {
+    let pooled = sensor.pooled.random_walk;
+    if sensor.misfit.contains(&true)
+        && let Parameter::Observable { high90, .. } = pooled
+        && high90.is_finite()
+    {
+        return format!(
+            "There is more in the signal than what was fitted: take the walk of the bias for at most \
+             about {} {}, its upper bound.",
+            short(high90),
+            Quantity::RandomWalk(sensor.kind).unit()
+        );
+    }
+    let shown: Vec<&str> = AXES
+        .into_iter()
+        .zip(&sensor.axes)
+        .filter(|(_, axis)| matches!(axis.random_walk, Parameter::Observable { .. }))
+        .map(|(name, _)| name)
+        .collect();
+    match (Known::of(pooled), pooled) {
+        (Known::Roughly(_), Parameter::Observable { low90, high90, .. }) => {
+            let where_from = match shown.as_slice() {
+                [axis] => format!("The walk of the bias shows on axis {axis} only, and is"),
+                _ => "The walk of the bias is".into(),
+            };
             format!(
-                " By its white noise ({} {}) it is {}.",
-                short(density),
-                twin.unit,
-                grade(Grade::of(sensor.kind, density))
+                "{where_from} known only roughly: it lies between {} and {} {}; record longer.",
+                short(low90),
+                short(high90),
+                Quantity::RandomWalk(sensor.kind).unit()
             )
         }
-        Parameter::NotObservable { .. } => String::new(),
+        (Known::Well(half), _) => {
+            format!("The walk of the bias is known well, to {}.", percent(half))
+        }
+        (Known::Fairly(half), _) => {
+            format!("The walk of the bias is known to {}: good enough for a filter.", percent(half))
+        }
+        (Known::Below(_), _) => {
+            "The walk of the bias does not show in a record of this length; its upper bound is safe to \
+             use."
+                .into()
+        }
+        (Known::Reading, _) => {
+            "The walk of the bias is a reading off a line, without an interval.".into()
+        }
+        (Known::NotAtAll | Known::Roughly(_), _) => {
+            "Nothing is known of the walk of the bias: record longer.".into()
+        }
+    }
+}
+
+/// The class by N, and where the classes end.
+fn grade_by_noise(sensor: &SensorNoise) -> String {
+    let Parameter::Observable { value, .. } = sensor.pooled.noise_density else {
+        return String::new();
     };
-    format!("{n} {k}{beyond}{grade}")
+    let twin = Quantity::NoiseDensity(sensor.kind).twin();
+    let density = value * twin.per_si;
+    let [navigation, tactical, industrial, consumer] = Grade::borders(sensor.kind);
+    let unit = twin.unit;
+    format!(
+        " By its white noise alone ({} {unit}) it is {}. (Navigation grade ends at {navigation} {unit}, \
+         tactical at {tactical}, industrial at {industrial}, consumer at {consumer}.)",
+        short(density),
+        grade(Grade::of(sensor.kind, density))
+    )
+}
+
+/// The class by the bias instability that a datasheet would print: of a gyroscope whose curve has a lowest point.
+fn grade_by_bias(sensor: &SensorNoise) -> String {
+    let (SensorKind::Gyroscope, Some((deviation, _))) = (sensor.kind, bias_instability(sensor))
+    else {
+        return String::new();
+    };
+    let twin = Quantity::BiasInstability(sensor.kind).twin();
+    let value = deviation * twin.per_si;
+    format!(
+        " By its bias instability ({} {}) it is {}.",
+        short(value),
+        twin.unit,
+        grade(Grade::of_bias_instability(value))
+    )
 }
 
 fn grade(grade: Grade) -> &'static str {
@@ -178,52 +244,160 @@ fn grade(grade: Grade) -> &'static str {
         Grade::Industrial => "of industrial grade, a good MEMS",
         Grade::Consumer => "of consumer grade, as in telephones and drones",
         Grade::Beyond => {
-            "noisier than sensors that are sold: it was shaken, is badly set, or is simulated"
+            "above what consumer sensors usually have; the numbers hold all the same, but look \
+             whether its range and filter are set as they should be, and whether it was at rest"
         }
     }
 }
 
-/// What a filter has to allow for, by what was seen here.
-pub(super) fn inflation(sensors: &[&SensorNoise]) -> Vec<String> {
-    let mut sentences = Vec::new();
-    for sensor in sensors {
-        let name = sensor.kind.name();
-        let Inflation { noise_density, random_walk } = Inflation::of(sensor);
-        if noise_density > 1.0 {
-            sentences.push(format!(
-                "{name}: short averaging times show {} times N (vibration, or a resonance): a filter \
-                 that takes every sample sees that.",
-                short(noise_density)
-            ));
-        }
-        if random_walk > 1.0 {
-            sentences.push(format!(
-                "{name}: its drift over this recording moves the bias {} times as far in {:.0} s as K \
-                 does: multiply K by that, or estimate the drift.",
-                short(random_walk),
-                Inflation::OVER_S
-            ));
-        }
-        if let Some(walk) = walk_for_filter(&sensor.pooled) {
-            sentences.push(format!(
-                "{name}: flicker (bias instability), which the filters above have no term for: the random \
-                 walk that stands there for them is {} {}, in the place of K.",
-                short(walk),
-                Quantity::RandomWalk(sensor.kind).unit()
-            ));
-        }
-        if let Some(warm_up_s) = sensor.warm_up_s {
-            sentences.push(format!(
-                "{name}: the bias still moves in the first {}: let it warm up, or start with a wide \
-                 uncertainty of the bias.",
-                span(warm_up_s)
-            ));
-        }
+/// The bias instability that a datasheet would print, in the sensor's unit, and where it comes from.
+fn bias_instability(sensor: &SensorNoise) -> Option<(f64, String)> {
+    if let Some(Parameter::Observable { value, .. }) = sensor.pooled.bias_instability {
+        let flat = value * (2.0 * std::f64::consts::LN_2 / std::f64::consts::PI).sqrt();
+        return Some((
+            flat,
+            "the flat part of the curve, 0.664 B; B was found in this recording".into(),
+        ));
     }
-    if sentences.is_empty() {
-        sentences.push("Nothing: the sensor at rest is white noise and a random walk.".into());
+    let (tau, deviation) = lowest(sensor)?;
+    let from = format!(
+        "the lowest point of the fit, at {} s; no flicker was found, so this is where white noise and the \
+         walk of the bias meet, not a noise of its own",
+        short(tau)
+    );
+    Some((deviation, from))
+}
+
+/// The bias instability as datasheets print it.
+pub(super) fn datasheet(sensor: &SensorNoise) -> String {
+    let twin = Quantity::BiasInstability(sensor.kind).twin();
+    match bias_instability(sensor) {
+        Some((deviation, from)) => format!(
+            "Bias instability as datasheets print it: {} {} ({} {}; {from}).",
+            short(deviation * twin.per_si),
+            twin.unit,
+            short(deviation),
+            sensor.kind.unit()
+        ),
+        None => format!(
+            "Bias instability as datasheets print it ({}) does not show: at the longest averaging time \
+             used the curve still falls.",
+            twin.unit
+        ),
     }
-    sentences
+}
+
+/// By how much N and K of a sensor should grow for what this recording shows: name, by the interval, by the noisiest
+/// axis, by what was seen beside, and all together at least.
+pub(super) fn margins(sensor: &SensorNoise) -> [[String; 5]; 2] {
+    let Inflation { noise_density, random_walk } = Inflation::of(sensor);
+    let noise = sensor.axes.each_ref().map(|axis| axis.noise_density);
+    let walks = sensor.axes.each_ref().map(|axis| axis.random_walk);
+    let name = |letter: &str| format!("{} {letter}", sensor.kind.name());
+    let n = margin(noise, sensor.pooled.noise_density, noise_density, "vibration");
+    let k = match (walk_for_filter(&sensor.pooled), sensor.pooled.random_walk) {
+        (Some(walk), Parameter::Observable { value, .. }) if value > 0.0 => {
+            let times = format!("flicker: {} times K", short(walk / value));
+            ["–".into(), "–".into(), times, "1.00 (the blocks hold it)".into()]
+        }
+        (Some(_), _) => {
+            ["–".into(), "–".into(), "flicker".into(), "1.00 (the blocks hold it)".into()]
+        }
+        (None, pooled) => margin(walks, pooled, random_walk, "drift"),
+    };
+    let misfit = sensor.misfit.contains(&true);
+    [(name("N"), n), (name("K"), k)].map(|(name, [interval, axes, beside, most])| {
+        let most = if misfit { format!("{most}, or more: see the warnings") } else { most };
+        [name, interval, axes, beside, most]
+    })
+}
+
+fn margin(axes: [Parameter; 3], pooled: Parameter, beside: f64, what: &str) -> [String; 4] {
+    let none = || "–".to_owned();
+    let seen = if beside > 1.0 { format!("{beside:.2} ({what})") } else { none() };
+    match (Margin::of(axes, pooled), pooled) {
+        (Some(margin), _) => [
+            format!("{:.2}", margin.interval),
+            format!("{:.2}", margin.axes),
+            seen,
+            format!("{:.2}", margin.most().max(beside)),
+        ],
+        (None, Parameter::NotObservable { upper90, .. }) if upper90.is_finite() => {
+            [none(), none(), seen, format!("{beside:.2} (the blocks hold its upper bound)")]
+        }
+        (None, _) => [none(), none(), seen, "not known".into()],
+    }
+}
+
+/// What was found in a recording beside white noise and a random walk; `warned` says that there are warnings of this
+/// sensor.
+pub(super) fn found(sensor: &SensorNoise, warned: bool) -> Vec<String> {
+    let mut found = Vec::new();
+    if sensor.misfit.contains(&true) {
+        let axes: Vec<&str> =
+            AXES.into_iter().zip(sensor.misfit).filter(|(_, m)| *m).map(|(axis, _)| axis).collect();
+        found.push(format!(
+            "more than was fitted, on {} {} (drift, temperature, motion): K is an upper limit there",
+            if axes.len() == 1 { "axis" } else { "axes" },
+            axes.join(", ")
+        ));
+    }
+    let Inflation { noise_density, random_walk } = Inflation::of(sensor);
+    if noise_density > 1.0 {
+        found.push(format!(
+            "short averaging times show {} times N (vibration, or a resonance): a filter that takes \
+             every sample sees that",
+            short(noise_density)
+        ));
+    } else if sensor.contradiction.is_some() {
+        found.push(
+            "short averaging times show less than N (a low-pass filter): neighbouring samples are \
+             alike, and N holds for longer times"
+                .into(),
+        );
+    }
+    if random_walk > 1.0 {
+        found.push(format!(
+            "a drift over this recording moves the bias {} times as far in {:.0} s as K does: \
+             multiply K by that, or estimate the drift",
+            short(random_walk),
+            Inflation::OVER_S
+        ));
+    } else if sensor.ramp.is_some() || sensor.pooled.rate_ramp.is_some() {
+        found.push("a steady drift, which in a filter’s time is less than K covers".into());
+    }
+    if let Some(walk) = walk_for_filter(&sensor.pooled) {
+        found.push(format!(
+            "flicker (bias instability), which the filters below have no term for: in the place of K \
+             stands {} {}, which covers both",
+            short(walk),
+            Quantity::RandomWalk(sensor.kind).unit()
+        ));
+    }
+    if let Some(warm_up_s) = sensor.warm_up_s {
+        found.push(format!(
+            "the bias still moves in the first {}: let it warm up, or start with a wide uncertainty of \
+             the bias",
+            span(warm_up_s)
+        ));
+    }
+    if !sensor.disturbed.is_empty() {
+        found.push("it was moved, touched or stood still, as the warnings say".into());
+    }
+    if found.is_empty() {
+        let walk_shows = matches!(sensor.pooled.random_walk, Parameter::Observable { .. });
+        found.push(if warned {
+            "nothing in the noise; see the warnings above".into()
+        } else if walk_shows {
+            format!(
+                "nothing that {} can show: at rest it is white noise and a random walk",
+                span(sensor.stamps.span_s)
+            )
+        } else {
+            format!("white noise only; {} are too short to show more", span(sensor.stamps.span_s))
+        });
+    }
+    found.iter().map(|sentence| format!("{}: {sentence}.", sensor.kind.name())).collect()
 }
 
 /// What to do better.
@@ -231,25 +405,36 @@ pub(super) fn next_time(sensors: &[&SensorNoise]) -> Vec<String> {
     let mut sentences = Vec::new();
     for sensor in sensors {
         let name = sensor.kind.name();
-        let recorded = sensor.stamps.span_s;
-        match (record_for_walk_s(sensor), sensor.pooled.random_walk) {
-            (Some(wanted), _) if wanted > 1.05 * recorded => sentences.push(format!(
-                "{name}: for K of each axis to 10 % record {}; this was {}.",
-                span(wanted),
-                span(recorded)
-            )),
-            (Some(_), _) => {
-                sentences.push(format!("{name}: long enough for K of each axis to 10 %."));
-            }
-            (None, Parameter::NotObservable { record_at_least_s, .. })
-                if record_at_least_s > 0.0 =>
-            {
+        match NextRecord::of(sensor) {
+            NextRecord::AtLeast(wanted_s) => {
+                let rough = !matches!(
+                    Known::of(sensor.pooled.random_walk),
+                    Known::Well(_) | Known::Fairly(_)
+                );
+                let more = if rough {
+                    " It may take several times as long: K read from a short record tends to be too large."
+                } else {
+                    ""
+                };
                 sentences.push(format!(
-                    "{name}: the walk of the bias shows in {} at the earliest.",
-                    span(record_at_least_s)
+                    "{name}: for K of each axis to 10 % (one standard deviation) record at least {}; this \
+                     was {}.{more}",
+                    span(wanted_s),
+                    span(sensor.stamps.span_s)
                 ));
             }
-            (None, _) => {}
+            NextRecord::LongEnough if sensor.misfit.contains(&true) => sentences.push(format!(
+                "{name}: a longer record alone does not help; find what else is in it (temperature, \
+                 motion)."
+            )),
+            NextRecord::LongEnough => sentences.push(format!(
+                "{name}: this was long enough for K of each axis to 10 % (one standard deviation)."
+            )),
+            NextRecord::HiddenByFlicker => sentences.push(format!(
+                "{name}: a longer record says little more of K, which flicker hides; a filter does not \
+                 need it."
+            )),
+            NextRecord::Unknown => {}
         }
         if sensor.contradiction.is_some() {
             sentences.push(format!(

@@ -3,9 +3,8 @@
 
 use imu_core::allan::{Parameter, interval};
 
-use super::chart::Chart;
+use super::chart::{Chart, Drawn};
 use super::scale::Scale;
-use super::svg::Shapes;
 use super::{AXES, Figure, WIDTH};
 use crate::calibrate::{AxisNoise, Calibration, SensorKind, SensorNoise};
 use crate::report::Quantity;
@@ -16,7 +15,7 @@ const HEIGHT: f64 = 440.0;
 const CURVE: usize = 200;
 
 /// Both sensors: deviations of x, y and z with 90 % intervals, the fit of all axes and its terms,
-/// and the averaging times that decided nothing.
+/// and the averaging times that were not used for it.
 #[must_use]
 pub fn allan(calibration: &Calibration) -> Figure {
     let sensors: Vec<_> = [&calibration.gyroscope, &calibration.accelerometer]
@@ -82,7 +81,18 @@ impl Curve {
     }
 }
 
-fn chart(sensor: &SensorNoise, top: f64) -> Shapes {
+/// The lowest point of the fit of all axes: averaging time, s, and deviation in the sensor's unit. `None` where the
+/// fit still falls at the longest averaging time that it used.
+pub(in crate::report) fn lowest(sensor: &SensorNoise) -> Option<(f64, f64)> {
+    let (shortest, longest) = sensor.tau_used_s?;
+    let fit = Curve::of(&sensor.pooled, 0.0);
+    let step = (longest / shortest).powf(1.0 / CURVE as f64);
+    let taus = (0..=CURVE).map(|i| shortest * step.powi(i as i32));
+    let (tau, deviation) = taus.map(|tau| (tau, fit.at(tau))).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (tau < longest / step.sqrt() && deviation > 0.0).then_some((tau, deviation))
+}
+
+fn chart(sensor: &SensorNoise, top: f64) -> Drawn {
     let unit = sensor.kind.unit();
     let taus = || sensor.deviation.iter().map(|d| d.tau_s);
     let measured = sensor.deviation.iter().flat_map(|d| &d.octaves);
@@ -103,11 +113,16 @@ fn chart(sensor: &SensorNoise, top: f64) -> Shapes {
     );
     let (first, last) = x.ends();
     if let Some((shortest, longest)) = sensor.tau_used_s {
-        if taus().any(|tau| tau < 0.99 * shortest) {
+        let shorter = taus().any(|tau| tau < 0.99 * shortest);
+        let longer = taus().any(|tau| tau > 1.01 * longest);
+        if shorter {
             chart.stripe("left-out", first, shortest / 1.414);
         }
-        if taus().any(|tau| tau > 1.01 * longest) {
+        if longer {
             chart.stripe("left-out", longest * 1.414, last);
+        }
+        if shorter || longer {
+            chart.name("left-out", "not used for the fit");
         }
     }
     for (axis, class) in AXES.iter().enumerate() {
@@ -131,8 +146,8 @@ fn chart(sensor: &SensorNoise, top: f64) -> Shapes {
         ("line x", "x"),
         ("line y", "y"),
         ("line z", "z"),
-        ("line fit", "fit"),
-        ("line term", "terms"),
+        ("line fit", "fit of all axes"),
+        ("line term", "its terms"),
     ] {
         chart.name(class, name);
     }
@@ -181,18 +196,10 @@ fn fitted(chart: &mut Chart, sensor: &SensorNoise, (first, last): (f64, f64)) {
         let text = format!("R = {} {unit}, at √2 s", short(r));
         chart.mark("mark", (2_f64.sqrt(), r), false, &text);
     }
-    // The least of the curve: that of N and K is at √3 N/K; of others it is looked for.
-    let least = if q == 0.0 && b == 0.0 && n > 0.0 && k > 0.0 {
-        let two = Curve { r: 0.0, ..fit };
-        let tau = 3_f64.sqrt() * n / k;
-        Some((tau, two.at(tau)))
-    } else {
-        points(&fit).into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| b > 0.0)
-    };
-    if let Some((tau, least)) = least {
+    if let Some((tau, deviation)) = lowest(sensor) {
         let unit = kind.unit();
-        let text = format!("least: {} {unit} at {} s", short(least), short(tau));
-        chart.mark("mark", (tau, least), true, &text);
+        let text = format!("lowest: {} {unit} at {} s", short(deviation), short(tau));
+        chart.mark("mark", (tau, deviation), true, &text);
     }
     if b > 0.0 {
         let (tau, flat) = ((first * last).sqrt(), Curve { b, ..Curve::default() }.at(1.0));

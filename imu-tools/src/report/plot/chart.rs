@@ -10,6 +10,8 @@ const ABOVE: f64 = 34.0;
 const BELOW: f64 = 50.0;
 /// Nearest two labels of an axis may come, across.
 const ACROSS: f64 = 34.0;
+/// A letter of a name takes no more than this across, and a line of them this up.
+const LETTER: (f64, f64) = (7.4, 15.0);
 
 /// A chart under construction.
 pub(super) struct Chart {
@@ -21,14 +23,40 @@ pub(super) struct Chart {
     inside: Shapes,
     /// What stands in the frame whatever lies below it.
     marks: Shapes,
-    legend: Vec<(&'static str, String)>,
+    /// Where names of marks stand: upper left and lower right corners.
+    named: Vec<(Point, Point)>,
+    legend: Vec<Key>,
+}
+
+/// A line of the legend: a class, and what it is called.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Key {
+    pub(super) class: &'static str,
+    pub(super) name: String,
+}
+
+impl Key {
+    /// Draws a sample of the class, 18 pixels wide, to the right of `x` around the height `y`.
+    pub(super) fn draw(&self, shapes: &mut Shapes, (x, y): Point) {
+        if self.class.starts_with("line") {
+            shapes.line(self.class, &[(x, y), (x + 18.0, y)]);
+        } else {
+            shapes.rectangle(self.class, (x, y - 6.0), (x + 18.0, y + 6.0));
+        }
+    }
+}
+
+/// A chart that is drawn.
+pub(super) struct Drawn {
+    pub(super) shapes: Shapes,
+    pub(super) legend: Vec<Key>,
 }
 
 impl Chart {
     /// A chart of this size, whose upper left corner is at `at`.
     pub(super) fn new(at: Point, size: (f64, f64), x: Scale, y: Scale) -> Self {
         let (inside, marks) = (Shapes::default(), Shapes::default());
-        Self { at, size, x, y, inside, marks, legend: Vec::new() }
+        Self { at, size, x, y, inside, marks, named: Vec::new(), legend: Vec::new() }
     }
 
     fn frame(&self) -> (Point, Point) {
@@ -87,10 +115,11 @@ impl Chart {
         let ((left, top), (right, bottom)) = self.frame();
         let (from, to) = (self.across(from).clamp(left, right), self.across(to).clamp(left, right));
         // A second of a day is still seen.
-        self.inside.rectangle(class, (from, top), (to.max(from + 1.0), bottom));
+        self.inside.rectangle(class, (from, top), (to.max(from + 2.5), bottom));
     }
 
-    /// A point with its name above it or below, to the right of it or, near the edge, to the left.
+    /// A point with its name above it or below, to the right of it or to the left: where it is inside
+    /// the frame and on no other name.
     pub(super) fn mark(&mut self, class: &str, (x, y): Point, below: bool, name: &str) {
         let ((left, top), (right, bottom)) = self.frame();
         let (px, py) = (self.across(x), self.up(y));
@@ -98,20 +127,44 @@ impl Chart {
             return;
         }
         self.marks.dot(class, (px, py), 4.5);
-        let near_edge = px > right - 150.0;
-        let (to, anchor) = if near_edge { (-9.0, Anchor::End) } else { (9.0, Anchor::Start) };
-        let at = (px + to, if below { py + 20.0 } else { py - 8.0 });
-        self.marks.words("halo", at, anchor, name);
-        self.marks.words("mark-name", at, anchor, name);
+        let width = LETTER.0 * name.chars().count() as f64;
+        let (over, under) = (py - 8.0, py + 20.0);
+        let heights = if below { [under, over] } else { [over, under] };
+        let places = [px + 9.0, px - 9.0 - width]
+            .into_iter()
+            .flat_map(|x| heights.map(|y| ((x, y - LETTER.1), (x + width, y + 3.0))));
+        let inside = |((x, y), (to_x, to_y)): &(Point, Point)| {
+            *x >= left && *to_x <= right && *y >= top && *to_y <= bottom
+        };
+        let free = |(from, to): &(Point, Point)| {
+            self.named.iter().all(|(other_from, other_to)| {
+                to.0 < other_from.0
+                    || other_to.0 < from.0
+                    || to.1 < other_from.1
+                    || other_to.1 < from.1
+            })
+        };
+        let mut fitting = places.filter(inside);
+        // A name that finds no room beside its point stands across it.
+        let fallback = fitting.clone().next().unwrap_or_else(|| {
+            let x = (right - width).min(px + 9.0).max(left);
+            let y = heights[0].clamp(top + LETTER.1, bottom - 4.0);
+            ((x, y - LETTER.1), (x + width, y + 3.0))
+        });
+        let (from, to) = fitting.find(free).unwrap_or(fallback);
+        self.named.push((from, to));
+        let at = (from.0, to.1 - 3.0);
+        self.marks.words("halo", at, Anchor::Start, name);
+        self.marks.words("mark-name", at, Anchor::Start, name);
     }
 
-    /// Names a class of lines in the legend.
+    /// Names a class of lines, or of areas, in the legend.
     pub(super) fn name(&mut self, class: &'static str, name: &str) {
-        self.legend.push((class, name.to_owned()));
+        self.legend.push(Key { class, name: name.to_owned() });
     }
 
     /// The whole chart; `id` is its own in the drawing.
-    pub(super) fn finish(self, id: &str, title: &str, x_name: &str, y_name: &str) -> Shapes {
+    pub(super) fn finish(self, id: &str, title: &str, x_name: &str, y_name: &str) -> Drawn {
         let (from, to) = self.frame();
         let mut shapes = Shapes::default();
         shapes.words("title", (from.0, from.1 - 13.0), Anchor::Start, title);
@@ -123,14 +176,14 @@ impl Chart {
         shapes.words("label", (middle, to.1 + 38.0), Anchor::Middle, x_name);
         shapes.upwards("label", (self.at.0 + 16.0, 0.5 * (from.1 + to.1)), y_name);
         let mut x = to.0;
-        for (class, name) in self.legend.iter().rev() {
-            x -= 7.2 * name.chars().count() as f64;
-            shapes.words("label", (x, from.1 - 13.0), Anchor::Start, name);
-            x -= 8.0;
-            shapes.line(class, &[(x - 18.0, from.1 - 17.0), (x, from.1 - 17.0)]);
-            x -= 30.0;
+        for key in self.legend.iter().rev() {
+            x -= 7.2 * key.name.chars().count() as f64;
+            shapes.words("label", (x, from.1 - 13.0), Anchor::Start, &key.name);
+            x -= 26.0;
+            key.draw(&mut shapes, (x, from.1 - 17.0));
+            x -= 12.0;
         }
-        shapes
+        Drawn { shapes, legend: self.legend }
     }
 
     fn grid(&self, shapes: &mut Shapes) {

@@ -26,13 +26,15 @@ mod svg;
 mod tradeoff;
 
 pub use allan::allan;
+pub(super) use allan::lowest;
 pub use residual::residual;
 pub use signal::signal;
 pub use tradeoff::tradeoff;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD as STANDARD;
-use svg::{Shapes, escape};
+use chart::{Drawn, Key};
+use svg::{Anchor, Shapes, escape};
 
 /// The font of all pictures.
 const FONT: &[u8] = include_bytes!("../../../assets/imu-sans.ttf");
@@ -53,18 +55,40 @@ pub struct Figure {
     /// What there is to see, in a sentence.
     description: String,
     shapes: Shapes,
+    /// What its charts name, each once.
+    legend: Vec<Key>,
 }
 
 impl Figure {
     /// Charts of this height under one another, one for each of `count`.
-    fn new(description: String, charts: impl Iterator<Item = Shapes>, each: f64) -> Self {
-        let mut shapes = Shapes::default();
+    fn new(description: String, charts: impl Iterator<Item = Drawn>, each: f64) -> Self {
+        let (mut shapes, mut legend) = (Shapes::default(), Vec::new());
         let mut height = 0.0;
         for chart in charts {
-            shapes.append(&chart);
+            shapes.append(&chart.shapes);
+            for key in chart.legend {
+                if !legend.contains(&key) {
+                    legend.push(key);
+                }
+            }
             height += each;
         }
-        Self { height, description, shapes }
+        Self { height, description, shapes, legend }
+    }
+
+    /// What its colours mean, each an element of its own, which a narrow page can wrap.
+    pub fn keys(&self) -> impl Iterator<Item = String> {
+        self.legend.iter().map(|key| {
+            let mut shapes = Shapes::default();
+            key.draw(&mut shapes, (0.0, 9.0));
+            shapes.words("label", (24.0, 13.5), Anchor::Start, &key.name);
+            let width = 30.0 + 7.4 * key.name.chars().count() as f64;
+            format!(
+                "<svg viewBox=\"0 0 {width} 18\" width=\"{width}\" height=\"18\" \
+                 font-family=\"Imu Sans, sans-serif\">{}</svg>",
+                shapes.text()
+            )
+        })
     }
 
     /// Whether there is nothing to see.

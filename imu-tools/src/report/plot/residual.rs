@@ -3,9 +3,8 @@
 use imu_core::allan::interval;
 
 use super::allan::Curve;
-use super::chart::Chart;
+use super::chart::{Chart, Drawn};
 use super::scale::Scale;
-use super::svg::Shapes;
 use super::{AXES, Figure, WIDTH};
 use crate::calibrate::{Calibration, SensorNoise};
 
@@ -23,7 +22,7 @@ pub fn residual(calibration: &Calibration) -> Figure {
     Figure::new("Measured Allan deviation over the fitted one".into(), charts, HEIGHT)
 }
 
-fn chart(sensor: &SensorNoise, top: f64) -> Shapes {
+fn chart(sensor: &SensorNoise, top: f64) -> Drawn {
     let x = Scale::decades(sensor.deviation.iter().map(|d| d.tau_s));
     let mut rows: [Vec<(f64, f64, f64, f64)>; 3] = Default::default();
     for (axis, rows) in rows.iter_mut().enumerate() {
@@ -45,11 +44,16 @@ fn chart(sensor: &SensorNoise, top: f64) -> Shapes {
     let (first, last) = x.ends();
     if let Some((shortest, longest)) = sensor.tau_used_s {
         let taus = || sensor.deviation.iter().map(|d| d.tau_s);
-        if taus().any(|tau| tau < 0.99 * shortest) {
+        let shorter = taus().any(|tau| tau < 0.99 * shortest);
+        let longer = taus().any(|tau| tau > 1.01 * longest);
+        if shorter {
             chart.stripe("left-out", first, shortest / 1.414);
         }
-        if taus().any(|tau| tau > 1.01 * longest) {
+        if longer {
             chart.stripe("left-out", longest * 1.414, last);
+        }
+        if shorter || longer {
+            chart.name("left-out", "not used for the fit");
         }
     }
     chart.line("line fit", &[(first, 1.0), (last, 1.0)]);

@@ -1,8 +1,7 @@
 //! The signal over time: its range and mean, and what was left out.
 
-use super::chart::Chart;
+use super::chart::{Chart, Drawn};
 use super::scale::Scale;
-use super::svg::Shapes;
 use super::{AXES, Figure, WIDTH};
 use crate::calibrate::{Calibration, Column, SensorNoise};
 
@@ -19,7 +18,7 @@ pub fn signal(calibration: &Calibration) -> Figure {
     Figure::new("The signal over time, and what was left out".into(), charts, HEIGHT)
 }
 
-fn chart(sensor: &SensorNoise, top: f64) -> Shapes {
+fn chart(sensor: &SensorNoise, top: f64) -> Drawn {
     let columns = &sensor.signal;
     let end = columns.iter().map(|column| column.to_s).fold(0.0, f64::max);
     let (unit, per_second) = match end {
@@ -43,8 +42,12 @@ fn chart(sensor: &SensorNoise, top: f64) -> Shapes {
     for stretch in &sensor.disturbed {
         chart.stripe("left-out", stretch.from_s * per_second, stretch.to_s * per_second);
     }
+    if !sensor.disturbed.is_empty() {
+        chart.name("left-out", "moved or touched");
+    }
     if let Some(warm_up_s) = sensor.warm_up_s {
         chart.stripe("warm-up", 0.0, warm_up_s * per_second);
+        chart.name("warm-up", "warming up");
     }
     for (axis, class) in AXES.iter().enumerate() {
         let about = |x: f64| x - sensor.mean[axis];
