@@ -36,7 +36,7 @@ pub(super) const HERE: &str = "The factors in this table are what this recording
 pub(super) const NOT_KNOWABLE: &str = "No recording at rest can tell what comes on top in use: vibration, a bias that follows temperature, \
      errors of scale and alignment (half a per cent of 1 rad/s is 0.005 rad/s), and time stamps that are \
      off. It is customary to multiply both N and K by 2 (gentle motion, a warm sensor) to 10 (a cheap \
-     sensor on a drone or an engine). The reason: with numbers that are too large a filter is a \
+     sensor on a drone or an engine), or by the table’s factor where that is larger. The reason: with numbers that are too large a filter is a \
      little less accurate than it might be; with numbers that are too small it trusts errors and may \
      diverge. If your filter shows its innovations (measured minus predicted), raise the factor until \
      they are no larger than the filter expects.";
@@ -177,8 +177,14 @@ fn walk(sensor: &SensorNoise) -> String {
                 [axis] => format!("The walk of the bias shows on axis {axis} only, and is"),
                 _ => "The walk of the bias is".into(),
             };
+            let next = match NextRecord::of(sensor) {
+                NextRecord::HiddenByFlicker => {
+                    "flicker hides it, and filters take a walk that covers both"
+                }
+                _ => "record longer",
+            };
             format!(
-                "{where_from} known only roughly: it lies between {} and {} {}; record longer.",
+                "{where_from} known only roughly: it lies between {} and {} {}; {next}.",
                 short(low90),
                 short(high90),
                 Quantity::RandomWalk(sensor.kind).unit()
@@ -244,7 +250,7 @@ fn grade(grade: Grade) -> &'static str {
         Grade::Industrial => "of industrial grade, a good MEMS",
         Grade::Consumer => "of consumer grade, as in telephones and drones",
         Grade::Beyond => {
-            "above what consumer sensors usually have; the numbers hold all the same, but look \
+            "noisier than consumer sensors usually are; the numbers hold all the same, but look \
              whether its range and filter are set as they should be, and whether it was at rest"
         }
     }
@@ -297,7 +303,7 @@ pub(super) fn margins(sensor: &SensorNoise) -> [[String; 5]; 2] {
     let n = margin(noise, sensor.pooled.noise_density, noise_density, "vibration");
     let k = match (walk_for_filter(&sensor.pooled), sensor.pooled.random_walk) {
         (Some(walk), Parameter::Observable { value, .. }) if value > 0.0 => {
-            let times = format!("flicker: {} times K", short(walk / value));
+            let times = format!("flicker: {:.1} times K", walk / value);
             ["–".into(), "–".into(), times, "1.00 (the blocks hold it)".into()]
         }
         (Some(_), _) => {
@@ -351,8 +357,8 @@ pub(super) fn found(sensor: &SensorNoise, warned: bool) -> Vec<String> {
         ));
     } else if sensor.contradiction.is_some() {
         found.push(
-            "short averaging times show less than N (a low-pass filter): neighbouring samples are \
-             alike, and N holds for longer times"
+            "short averaging times show no more than N, as behind a low-pass filter: neighbouring \
+             samples are alike, and N holds for longer times"
                 .into(),
         );
     }
@@ -386,15 +392,11 @@ pub(super) fn found(sensor: &SensorNoise, warned: bool) -> Vec<String> {
     }
     if found.is_empty() {
         let walk_shows = matches!(sensor.pooled.random_walk, Parameter::Observable { .. });
-        found.push(if warned {
-            "nothing in the noise; see the warnings above".into()
-        } else if walk_shows {
-            format!(
-                "nothing that {} can show: at rest it is white noise and a random walk",
-                span(sensor.stamps.span_s)
-            )
-        } else {
-            format!("white noise only; {} are too short to show more", span(sensor.stamps.span_s))
+        let length = span(sensor.stamps.span_s);
+        found.push(match (walk_shows, warned) {
+            (false, _) => format!("nothing; a record of {length} is too short to show even the walk"),
+            (true, true) => "nothing in the noise, but see the warnings above".into(),
+            (true, false) => format!("nothing that a record of {length} can show"),
         });
     }
     found.iter().map(|sentence| format!("{}: {sentence}.", sensor.kind.name())).collect()

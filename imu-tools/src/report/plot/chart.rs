@@ -153,9 +153,11 @@ impl Chart {
         });
         let (from, to) = fitting.find(free).unwrap_or(fallback);
         self.named.push((from, to));
-        let at = (from.0, to.1 - 3.0);
-        self.marks.words("halo", at, Anchor::Start, name);
-        self.marks.words("mark-name", at, Anchor::Start, name);
+        let (x, anchor) =
+            if to.0 < px { (to.0, Anchor::End) } else { (from.0, Anchor::Start) };
+        let at = (x, to.1 - 3.0);
+        self.marks.words("halo", at, anchor, name);
+        self.marks.words("mark-name", at, anchor, name);
     }
 
     /// Names a class of lines, or of areas, in the legend.
