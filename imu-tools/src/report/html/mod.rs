@@ -257,6 +257,7 @@ fn span(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::calibrate::verdict::NextRecord;
     use crate::calibrate::{Options, calibrate};
     use crate::scene::{Preset, Scene, Simulator};
 
@@ -286,6 +287,33 @@ mod tests {
         // Nothing is fetched: the only address is the name of SVG.
         assert!(page.matches("http").count() == page.matches("http://www.w3.org/2000/svg").count());
         assert!(!page.contains("<script") && !page.contains("NaN") && !page.contains("inf "));
+    }
+
+    #[test]
+    fn what_was_found_is_not_nothing() {
+        let mut calibration = calibration(600, "a");
+        let clean = page(&calibration);
+        assert!(clean.contains("°/s/√Hz") && clean.contains("No recording at rest can tell"));
+        assert_eq!(clean.matches("<details open>").count(), 5);
+        assert!(!clean.contains("more than was fitted"));
+        calibration.gyroscope.as_mut().unwrap().misfit = [true, false, true];
+        let page = page(&calibration);
+        assert!(page.contains("gyroscope: more than was fitted, on axes x, z"), "{page}");
+        assert!(page.contains("or more: see the warnings"), "{page}");
+        assert!(!page.contains("gyroscope: nothing"), "{page}");
+    }
+
+    /// Warning, Kalibr's file and the end of the page name the same length.
+    #[test]
+    fn one_advice_of_how_long_to_record() {
+        let mut calibration = calibration(120, "a");
+        let sensor = calibration.gyroscope.as_mut().unwrap();
+        let bound = Parameter::NotObservable { upper90: 1e-3, record_at_least_s: 300.0 };
+        sensor.pooled.random_walk = bound;
+        let NextRecord::AtLeast(wanted_s) = NextRecord::of(sensor) else { panic!("too short") };
+        let advice = format!("record at least {}", span(wanted_s));
+        let page = page(&calibration);
+        assert!(page.matches(&advice).count() >= 2, "{advice}: {page}");
     }
 
     /// Seconds, a constant: pages and pictures say what is not known, and none has a number that is

@@ -394,7 +394,9 @@ pub(super) fn found(sensor: &SensorNoise, warned: bool) -> Vec<String> {
         let walk_shows = matches!(sensor.pooled.random_walk, Parameter::Observable { .. });
         let length = span(sensor.stamps.span_s);
         found.push(match (walk_shows, warned) {
-            (false, _) => format!("nothing; a record of {length} is too short to show even the walk"),
+            (false, _) => {
+                format!("nothing; a record of {length} is too short to show even the walk")
+            }
             (true, true) => "nothing in the noise, but see the warnings above".into(),
             (true, false) => format!("nothing that a record of {length} can show"),
         });

@@ -202,7 +202,9 @@ fn fitted(chart: &mut Chart, sensor: &SensorNoise, (first, last): (f64, f64)) {
         chart.mark("mark", (tau, deviation), true, &text);
     }
     if b > 0.0 {
-        let (tau, flat) = ((first * last).sqrt(), Curve { b, ..Curve::default() }.at(1.0));
+        // On the left, below the curve, where nothing else is written.
+        let tau = first * (last / first).powf(0.2);
+        let flat = Curve { b, ..Curve::default() }.at(1.0);
         let text = format!("0.664 B, B = {} {}", short(b), kind.unit());
         chart.mark("mark", (tau, flat), false, &text);
     }

@@ -153,8 +153,7 @@ impl Chart {
         });
         let (from, to) = fitting.find(free).unwrap_or(fallback);
         self.named.push((from, to));
-        let (x, anchor) =
-            if to.0 < px { (to.0, Anchor::End) } else { (from.0, Anchor::Start) };
+        let (x, anchor) = if to.0 < px { (to.0, Anchor::End) } else { (from.0, Anchor::Start) };
         let at = (x, to.1 - 3.0);
         self.marks.words("halo", at, anchor, name);
         self.marks.words("mark-name", at, anchor, name);
