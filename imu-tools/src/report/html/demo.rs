@@ -79,7 +79,7 @@ mod tests {
         });
         let page = demo(&levels);
         assert_eq!(page.matches("<tr>").count(), 1 + 2 * 4);
-        assert_eq!(page.matches("<svg").count(), 2);
+        assert_eq!(page.matches("<figure>").count(), 2);
         assert!(page.contains("href=\"mid/report.html\"") && page.contains("kalibr_allan"));
         assert!(page.len() < 1_000_000 && !page.contains("NaN<"));
     }
