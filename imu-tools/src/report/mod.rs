@@ -8,6 +8,7 @@
 pub mod csv;
 pub mod demo;
 pub mod formats;
+mod harmless;
 pub mod html;
 pub mod info;
 pub mod json;
@@ -17,4 +18,5 @@ pub mod tradeoff;
 mod units;
 pub mod yaml;
 
+pub(crate) use harmless::harmless;
 pub use units::{Quantity, Twin};

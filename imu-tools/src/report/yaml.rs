@@ -4,9 +4,8 @@ use std::fmt::Write as _;
 
 use imu_core::allan::Parameter;
 
-use super::Quantity;
-use super::table::duration;
-use super::table::short;
+use super::table::{duration, short};
+use super::{Quantity, harmless};
 use crate::calibrate::verdict::{Inflation, NextRecord, walk_for_filter};
 use crate::calibrate::{Calibration, SensorKind, SensorNoise};
 
@@ -18,7 +17,7 @@ pub fn kalibr(calibration: &Calibration) -> String {
     let mut text = format!(
         "# IMU noise for Kalibr, estimated from {} ({:.0} s).\n\
          # Continuous-time densities; x, y and z pooled. Intervals are of 90 % confidence.\n",
-        one_line(&calibration.path),
+        harmless(&calibration.path, ""),
         calibration.span_s
     );
     text.push_str(&warnings(calibration));
@@ -45,7 +44,7 @@ pub fn kalibr(calibration: &Calibration) -> String {
 /// The warnings of a calibration as comments: they touch whatever stands below them.
 pub(super) fn warnings(calibration: &Calibration) -> String {
     let lines = calibration.warnings.iter();
-    lines.map(|warning| format!("# Warning: {}\n", one_line(warning))).collect()
+    lines.map(|warning| format!("# Warning: {}\n", harmless(warning, ""))).collect()
 }
 
 /// The topic of a sensor in quotes; where the recording names none, `/imu0` and a remark.
@@ -129,13 +128,10 @@ fn known(quantity: Quantity, parameter: Parameter) -> String {
     }
 }
 
-/// A YAML string: a topic is a file's word, and may hold anything.
+/// A YAML string, in which `\u000a` is the character itself: a topic is a file's word, and may hold anything.
 fn quoted(text: &str) -> String {
-    format!("\"{}\"", one_line(text).replace('\\', "\\\\").replace('"', "\\\""))
-}
-
-fn one_line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+    let text = text.replace('\\', "\\\\").replace('"', "\\\"");
+    format!("\"{}\"", harmless(&text, ""))
 }
 
 #[cfg(test)]
@@ -144,6 +140,6 @@ mod tests {
 
     #[test]
     fn topics_cannot_break_out_of_their_quotes() {
-        assert_eq!(quoted("/imu\"\n: x\\"), "\"/imu\\\" : x\\\\\"");
+        assert_eq!(quoted("/imu\"\n: x\\"), "\"/imu\\\"\\u000a: x\\\\\"");
     }
 }

@@ -25,7 +25,7 @@ use super::formats::Form;
 use super::json::AXES;
 use super::plot::{self, Figure, font_base64};
 use super::table::{duration, short};
-use super::{Quantity, Twin};
+use super::{Quantity, Twin, harmless};
 use crate::calibrate::{Calibration, SensorNoise};
 
 /// Colours of the page and of the pictures in it.
@@ -76,7 +76,7 @@ fn document(title: &str, body: &Markup) -> String {
             }
         }
     };
-    markup.into_string()
+    harmless(&markup.into_string(), "\n").into_owned()
 }
 
 fn verdict(sensors: &[&SensorNoise]) -> Markup {
@@ -270,9 +270,9 @@ mod tests {
 
     #[test]
     fn a_page_answers_and_stays_small_and_alone() {
-        let page = page(&calibration(600, "a <b>&.bag"));
+        let page = page(&calibration(600, "a <b>&\x1b\u{85}.bag"));
         for words in [
-            "a &lt;b&gt;&amp;.bag, 10 min long",
+            "a &lt;b&gt;&amp;\\u001b\\u0085.bag, 10 min long",
             "White noise is known well",
             "Is it good enough?",
             "How to read the plots",
