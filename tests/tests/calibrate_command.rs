@@ -371,3 +371,33 @@ fn results_go_into_a_folder_and_not_over_a_recording() {
     }
     assert_eq!(folder.names(), ["allan.csv"]);
 }
+
+/// Where a sensor never changes nothing is known of its noise: no form has a number for it.
+#[test]
+fn a_constant_sensor_has_no_number_in_any_form() {
+    let (folder, mut block) = (Folder::new(), simulated(MINUTE, 1));
+    for sample in &mut block.accelerometer {
+        sample.value = [0.0, 0.0, 9.81];
+    }
+    let path = folder.record("a.csv", &block);
+    for (form, keys) in [
+        ("kalibr", &["accelerometer_noise_density", "accelerometer_random_walk"][..]),
+        ("imu_utils", &["acc_n", "acc_w"]),
+        ("vins", &["acc_n", "acc_w"]),
+        ("openvins", &["accelerometer_noise_density", "accelerometer_random_walk"]),
+        ("orbslam3", &["IMU.NoiseAcc", "IMU.AccWalk"]),
+        ("ros-covariance", &["linear_acceleration_covariance"]),
+    ] {
+        let said = calibrate(&[&path, "--format", form]);
+        assert_eq!(said.code, 0, "{}", said.err);
+        for key in keys {
+            let lines: Vec<_> = said.out.lines().filter(|line| line.contains(key)).collect();
+            let told = |line: &&str| {
+                line.trim_start().starts_with('#') && line.contains("nothing is known")
+            };
+            assert!(!lines.is_empty() && lines.iter().all(told), "{form}: {}", said.out);
+        }
+        let number = |line: &str| !line.trim_start().starts_with('#') && line.contains("e-");
+        assert!(said.out.lines().any(number), "the gyroscope's: {form}: {}", said.out);
+    }
+}

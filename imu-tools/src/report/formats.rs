@@ -1,6 +1,7 @@
 //! Noise parameters as the programs want them that use them: each in the unit that its program takes.
 //!
-//! A parameter that the record cannot show stands there by its upper 90 % bound, and a comment says so.
+//! A parameter that the record cannot show stands there by its upper 90 % bound, and a comment says so; one of
+//! which nothing is known is a comment alone.
 
 use std::fmt::Write as _;
 
@@ -54,29 +55,39 @@ struct Sensors<'a> {
     warnings: String,
 }
 
-/// A value, or its upper bound; what to remark about it.
-fn value(parameter: Parameter) -> (f64, &'static str) {
+/// A value and what to remark about it.
+type Remarked = (f64, &'static str);
+
+/// A value, or its upper bound; none where nothing is known.
+fn value(parameter: Parameter) -> Option<Remarked> {
     match parameter {
-        Parameter::Observable { value, .. } => (value, ""),
-        Parameter::NotObservable { upper90, .. } if upper90.is_finite() => {
-            (upper90, "  NOT OBSERVABLE: its upper 90 % bound")
+        Parameter::Observable { value, .. } => Some((value, "")),
+        Parameter::NotObservable { upper90, .. } => {
+            upper90.is_finite().then_some((upper90, "  NOT OBSERVABLE: its upper 90 % bound"))
         }
-        Parameter::NotObservable { .. } => (0.0, "  NOTHING IS KNOWN of it: put a value here"),
     }
 }
 
 /// N and K of all axes; where there is a bias instability, a walk that covers it, because no program here has a term
 /// for it.
-fn noise(sensor: &SensorNoise) -> [(f64, &'static str); 2] {
+fn noise(sensor: &SensorNoise) -> [Option<Remarked>; 2] {
     [value(sensor.pooled.noise_density), walk(&sensor.pooled)]
 }
 
 /// A random walk for a filter.
-fn walk(noise: &AxisNoise) -> (f64, &'static str) {
+fn walk(noise: &AxisNoise) -> Option<Remarked> {
     match walk_for_filter(noise) {
-        Some(walk) => (walk, "  covers the bias instability too"),
+        Some(walk) => Some((walk, "  covers the bias instability too")),
         None => value(noise.random_walk),
     }
+}
+
+/// The line of a key.
+fn put(text: &mut String, key: &str, value: Option<Remarked>, unit: &str) {
+    let _ = match value {
+        Some((value, remark)) => writeln!(text, "{key}: {value:.6e}  # {unit}{remark}"),
+        None => writeln!(text, "# {}: nothing is known of it ({unit})", key.trim_start()),
+    };
 }
 
 impl Sensors<'_> {
@@ -108,13 +119,10 @@ impl Sensors<'_> {
                 SensorKind::Accelerometer => ("acc", "m/s^2"),
             };
             let root = sensor.stamps.rate_hz.sqrt();
-            let [(n, n_remark), (k, k_remark)] = noise(sensor);
-            let _ = writeln!(text, "{key}_n: {:.6e}  # {unit} a sample{n_remark}", n * root);
-            let _ = writeln!(
-                text,
-                "{key}_w: {:.6e}  # {unit}/s a sample: the random walk of the bias{k_remark}",
-                k * root
-            );
+            let [n, k] = noise(sensor).map(|v| v.map(|(value, remark)| (value * root, remark)));
+            put(&mut text, &format!("{key}_n"), n, &format!("{unit} a sample"));
+            let unit = format!("{unit}/s a sample: the random walk of the bias");
+            put(&mut text, &format!("{key}_w"), k, &unit);
         }
         text
     }
@@ -133,9 +141,9 @@ impl Sensors<'_> {
         for sensor in self.each() {
             let name = sensor.kind.name();
             let (n_unit, k_unit) = densities(sensor.kind);
-            let [(n, n_remark), (k, k_remark)] = noise(sensor);
-            let _ = writeln!(text, "  {name}_noise_density: {n:.6e}  # {n_unit}{n_remark}");
-            let _ = writeln!(text, "  {name}_random_walk: {k:.6e}  # {k_unit}{k_remark}");
+            let [n, k] = noise(sensor);
+            put(&mut text, &format!("  {name}_noise_density"), n, n_unit);
+            put(&mut text, &format!("  {name}_random_walk"), k, k_unit);
         }
         let _ = writeln!(
             text,
@@ -157,9 +165,9 @@ impl Sensors<'_> {
                 SensorKind::Accelerometer => ("IMU.NoiseAcc", "IMU.AccWalk"),
             };
             let (n_unit, k_unit) = densities(sensor.kind);
-            let [(n, n_remark), (k, k_remark)] = noise(sensor);
-            let _ = writeln!(text, "{noise_key}: {n:.6e}  # {n_unit}{n_remark}");
-            let _ = writeln!(text, "{walk_key}: {k:.6e}  # {k_unit}{k_remark}");
+            let [n, k] = noise(sensor);
+            put(&mut text, noise_key, n, n_unit);
+            put(&mut text, walk_key, k, k_unit);
         }
         let _ = writeln!(text, "IMU.Frequency: {:.3}", self.rate_hz());
         text
@@ -177,9 +185,13 @@ impl Sensors<'_> {
                 SensorKind::Accelerometer => ("linear_acceleration_covariance", "(m/s^2)^2"),
             };
             let variance = sensor.deviation.first().map(|d| d.octaves.map(|o| o.variance));
-            let [x, y, z] = variance.unwrap_or_default();
-            let _ =
-                writeln!(text, "{key}: [{x:.6e}, 0, 0, 0, {y:.6e}, 0, 0, 0, {z:.6e}]  # {unit}");
+            let variance = variance.filter(|variance| variance.iter().all(|v| *v > 0.0));
+            let _ = match variance {
+                Some([x, y, z]) => {
+                    writeln!(text, "{key}: [{x:.6e}, 0, 0, 0, {y:.6e}, 0, 0, 0, {z:.6e}]  # {unit}")
+                }
+                None => writeln!(text, "# {key}: of an axis nothing is known ({unit})"),
+            };
         }
         text
     }
@@ -203,23 +215,29 @@ impl Sensors<'_> {
             for (name, axis) in
                 [("avg-axis", &sensor.pooled), ("x-axis", x), ("y-axis", y), ("z-axis", z)]
             {
-                let ((n, n_remark), (k, k_remark)) =
-                    (value(axis.noise_density), value(axis.random_walk));
-                let white = n * sensor.stamps.rate_hz.sqrt();
+                let (n, k) = (value(axis.noise_density), value(axis.random_walk));
+                let white = n.map(|(n, remark)| (n * sensor.stamps.rate_hz.sqrt(), remark));
                 // The flat of B is under all of the curve of N and K.
                 let b = axis.bias_instability.map_or(0.0, |b| match b {
                     Parameter::Observable { value, .. } => value,
                     Parameter::NotObservable { .. } => 0.0,
                 });
                 let flat = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI * b * b;
-                let least = (2.0 * n * k / 3_f64.sqrt() + flat).sqrt();
-                let comment = |remark: &str| match remark {
-                    "" => String::new(),
-                    remark => format!("  #{remark}"),
-                };
-                let _ =
-                    writeln!(text, "   {name}:\n      {key}_n: {white:.16e}{}", comment(n_remark));
-                let _ = writeln!(text, "      {key}_w: {least:.16e}{}", comment(k_remark));
+                let least = n.zip(k).map(|((n, _), (k, remark))| {
+                    ((2.0 * n * k / 3_f64.sqrt() + flat).sqrt(), remark)
+                });
+                let _ = writeln!(text, "   {name}:");
+                for (letter, value) in [("n", white), ("w", least)] {
+                    let _ = match value {
+                        Some((value, "")) => {
+                            writeln!(text, "      {key}_{letter}: {value:.16e}")
+                        }
+                        Some((value, remark)) => {
+                            writeln!(text, "      {key}_{letter}: {value:.16e}  #{remark}")
+                        }
+                        None => writeln!(text, "      # {key}_{letter}: nothing is known of it"),
+                    };
+                }
             }
         }
         text
