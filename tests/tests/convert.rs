@@ -168,6 +168,13 @@ fn a_pipe_at_both_ends() {
             let name = format!("piped.{}", format.name());
             let piped = folder.put(&name, &output.stdout);
             assert_eq!(bits(&samples(&piped)), bits(&block), "{from} to {}", format.name());
+            // A pipe cannot go back to the header: that is told, and is no loss.
+            let told = run(&["info", &piped]);
+            assert_eq!(told.code, 0, "{}", told.err);
+            assert!(!told.err.contains("not closed") && !told.out.contains("not closed"));
+            let through_a_pipe =
+                told.out.contains("through a pipe") || told.err.contains("through a pipe");
+            assert_eq!(through_a_pipe, format.name() == "bag", "{}{}", told.out, told.err);
         }
     }
 }

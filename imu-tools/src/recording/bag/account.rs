@@ -5,7 +5,7 @@ use super::record::Header;
 /// A bag's own account of its parts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Account {
-    /// Where the bag says that its index is; 0 when it was never closed.
+    /// Where the bag says that its index is; 0 when it was never closed, or written through a pipe.
     pub index_pos: u64,
     /// How many chunks it says that it has.
     chunk_count: Option<u32>,
@@ -35,6 +35,10 @@ impl Account {
         let lost = index_pos.saturating_sub(size);
         Some(if index_pos == 0 && cut {
             "was not closed and is cut off in the middle of a record: what comes before is used"
+                .into()
+        } else if index_pos == 0 && infos > 0 && infos == chunks {
+            "was written through a pipe, so that its first record does not say where its index is, which \
+             costs no message"
                 .into()
         } else if index_pos == 0 {
             "was not closed: what was recorded last may be missing".into()
