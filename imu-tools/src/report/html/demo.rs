@@ -5,6 +5,7 @@ use maud::html;
 use super::{document, picture, words};
 use crate::report::demo::{Comparison, Level, REMARKS, comparisons, estimated, told};
 use crate::report::plot;
+use crate::scene::display_duration;
 
 /// The page; the report of each level is in a folder of its name beside it.
 #[must_use]
@@ -12,8 +13,8 @@ pub fn demo(levels: &[Level]) -> String {
     let body = html! {
         h1 { "Three noise levels, and what is read of them" }
         p.lead {
-            "Each level is a sensor at rest for four hours at 200 Hz, simulated with noise that is known, \
-             and calibrated as a recording would be."
+            "Each level is a sensor at rest, simulated with noise that is known, and calibrated as a \
+             recording would be."
         }
         h2 { "Estimated beside true, and beside two classic tools" }
         div.wide {
@@ -40,7 +41,8 @@ pub fn demo(levels: &[Level]) -> String {
             h2 { (words::capital(level.name)) }
             (picture(&plot::allan(&level.calibration), ""))
             p {
-                a href={ (level.name) "/report.html" } { "Report of level " (level.name) }
+                (display_duration(level.scene.duration_ns)) " at " (level.scene.rate_hz) " Hz: "
+                a href={ (level.name) "/report.html" } { "report of level " (level.name) }
             }
         }
     };
@@ -80,6 +82,7 @@ mod tests {
         let page = demo(&levels);
         assert_eq!(page.matches("<tr>").count(), 1 + 2 * 4);
         assert_eq!(page.matches("<figure>").count(), 2);
+        assert_eq!(page.matches("10 min at 200 Hz").count(), 2);
         assert!(page.contains("href=\"mid/report.html\"") && page.contains("kalibr_allan"));
         assert!(page.len() < 1_000_000 && !page.contains("NaN<"));
     }
