@@ -41,7 +41,7 @@ pub fn demo(levels: &[Level]) -> String {
             h2 { (words::capital(level.name)) }
             (picture(&plot::allan(&level.calibration), ""))
             p {
-                (display_duration(level.scene.duration_ns)) " at " (level.scene.rate_hz) " Hz: "
+                (display_duration(level.scene.duration_ns)) " at " (level.scene.rate.hz()) " Hz: "
                 a href={ (level.name) "/report.html" } { "report of level " (level.name) }
             }
         }
