@@ -309,7 +309,10 @@ mod tests {
             Form::RosCovariance,
         ] {
             let text = form.write(&calibration);
-            assert!(text.contains("\n# Warning: gyroscope: shaken all: the time\n"), "{text}");
+            assert!(
+                text.contains("\n# Warning: gyroscope: shaken\\u000aall: the time\n"),
+                "{text}"
+            );
         }
         assert!(Form::OpenVins.write(&calibration).contains("  rostopic: \"/imu/data\"\n"));
         assert!(Form::Vins.write(&calibration).contains("\nimu_topic: \"/imu/data\"\n"));

@@ -40,6 +40,7 @@ pub fn parse_duration(text: &str) -> Result<u64, Error> {
         let digits = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
         let (number, tail) = rest.split_at(digits);
         let number: f64 = number.parse().map_err(|_| refuse("cannot be read"))?;
+        let tail = tail.trim_start();
         let end = tail.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(tail.len());
         let (name, tail) = tail.split_at(end);
         let (_, unit) =
@@ -84,6 +85,7 @@ mod tests {
             ("4h", 14_400.0),
             ("1h30m", 5_400.0),
             ("1h 30min", 5_400.0),
+            ("1 h 30 min", 5_400.0),
             ("90", 90.0),
             ("0.5s", 0.5),
             ("250ms", 0.25),
