@@ -5,7 +5,6 @@ use imu_core::allan::{Octave, Parameter};
 use super::verdict::{Inflation, NextRecord, walk_for_filter};
 use super::{AxisNoise, Deviation, SensorNoise, Stretch};
 use crate::recording::Summary;
-use crate::report::Quantity;
 use crate::scene::display_duration;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -160,7 +159,7 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
         ));
     }
     if let Some(Parameter::Observable { .. }) = sensor.pooled.bias_instability {
-        let unit = Quantity::RandomWalk(sensor.kind).unit();
+        let unit = sensor.kind.walk_unit();
         let walk = walk_for_filter(&sensor.pooled).unwrap_or_default();
         to.push(format!(
             "there is flicker (bias instability B): K stands beside it, and is known less well than alone; \

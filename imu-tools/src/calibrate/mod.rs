@@ -149,6 +149,15 @@ impl SensorKind {
             Self::Accelerometer => "m/s²",
         }
     }
+
+    /// The unit of its random walk K, a continuous-time density.
+    #[must_use]
+    pub const fn walk_unit(self) -> &'static str {
+        match self {
+            Self::Gyroscope => "rad/s²/√Hz",
+            Self::Accelerometer => "m/s³/√Hz",
+        }
+    }
 }
 
 /// The noise of one sensor.

@@ -76,8 +76,7 @@ impl Quantity {
         match self {
             Self::NoiseDensity(SensorKind::Gyroscope) => "rad/s/√Hz",
             Self::NoiseDensity(SensorKind::Accelerometer) => "m/s²/√Hz",
-            Self::RandomWalk(SensorKind::Gyroscope) => "rad/s²/√Hz",
-            Self::RandomWalk(SensorKind::Accelerometer) => "m/s³/√Hz",
+            Self::RandomWalk(kind) => kind.walk_unit(),
             Self::BiasInstability(kind) => kind.unit(),
             Self::Quantisation(SensorKind::Gyroscope) => "rad",
             Self::Quantisation(SensorKind::Accelerometer) => "m/s",
