@@ -2,7 +2,8 @@
 
 use imu_core::allan::{Octave, Parameter};
 
-use super::verdict::{Inflation, NextRecord, walk_for_filter};
+use super::filter::{Factors, walk_for_filter};
+use super::verdict::NextRecord;
 use super::{AxisNoise, Deviation, SensorNoise, Stretch};
 use crate::recording::Summary;
 use crate::scene::display_duration;
@@ -163,9 +164,8 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
         let walk = walk_for_filter(&sensor.pooled).unwrap_or_default();
         to.push(format!(
             "there is flicker (bias instability B): K stands beside it, and is known less well than alone; \
-             for a filter that has no flicker, {walk:.2e} {unit} goes as far in {:.0} s as B and K \
-             together, and is what files for filters hold",
-            Inflation::OVER_S
+             files for filters hold {walk:.2e} {unit}, which goes as far in {:.0} s as both",
+            Factors::OVER_S
         ));
     }
     if let Some(times) = spread_of_axes(sensor) {
@@ -181,7 +181,9 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
             NextRecord::AtLeast(wanted_s) => format!("; record at least {}", seconds(wanted_s)),
             _ => String::new(),
         };
-        to.push(format!("the record is too short to show the random walk of the bias{next}"));
+        to.push(format!(
+            "the record is too short to show the random walk of the bias on all axes{next}"
+        ));
     }
 }
 
@@ -193,6 +195,11 @@ fn fitted(sensor: &SensorNoise) -> &'static str {
     } else {
         "the terms that were fitted"
     }
+}
+
+/// Whether a sensor was moved or shaken all the time, so that its numbers are those of the motion.
+pub(super) fn moved_throughout(sensor: &SensorNoise) -> bool {
+    sensor.contradiction.is_some_and(|c| motion(sensor, c.octave).is_some())
 }
 
 /// How many times as far the axes go at a τ, up to that of `octave`, as white noise would that goes as far

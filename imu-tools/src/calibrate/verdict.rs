@@ -1,9 +1,10 @@
-//! What a calibration is worth: how well each number is known, what grade the sensor is of, how long
-//! to record, and how much more than the sensor's own noise a filter should allow for.
+//! What a calibration is worth: how well each number is known, whether that is enough, what grade the sensor is of
+//! and how long to record. What a filter should be given is in [`filter`](super::filter).
 
 use imu_core::allan::Parameter;
 
-use super::{AxisNoise, SensorKind, SensorNoise};
+use super::filter::{Basis, Factors, FilterValue};
+use super::{SensorKind, SensorNoise, advice};
 
 /// How well a parameter is known, by half its 90 % interval over its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +24,10 @@ pub enum Known {
 }
 
 impl Known {
+    /// Half an interval over its value up to which a number is good enough: what use adds ([`Factors::USE`]) is larger
+    /// by far.
+    pub const ENOUGH: f64 = 0.3;
+
     /// How well this one is known.
     #[must_use]
     pub fn of(parameter: Parameter) -> Self {
@@ -30,13 +35,63 @@ impl Known {
             Parameter::Observable { value, low90, high90, .. } if high90.is_finite() => {
                 match 0.5 * (high90 - low90) / value {
                     half if half <= 0.05 => Self::Well(half),
-                    half if half <= 0.3 => Self::Fairly(half),
+                    half if half <= Self::ENOUGH => Self::Fairly(half),
                     half => Self::Roughly(half),
                 }
             }
             Parameter::Observable { .. } => Self::Reading,
             Parameter::NotObservable { upper90, .. } if upper90.is_finite() => Self::Below(upper90),
             Parameter::NotObservable { .. } => Self::NotAtAll,
+        }
+    }
+
+    /// Whether it is known well enough for a filter.
+    #[must_use]
+    pub fn is_enough(self) -> bool {
+        matches!(self, Self::Well(_) | Self::Fairly(_))
+    }
+}
+
+/// The 90 % interval of a value, from 0 where its lower end is less than a hundredth of the value: there the
+/// likelihood never fell far enough, and the end is that of the search.
+#[must_use]
+pub fn interval(value: f64, low90: f64, high90: f64) -> (f64, f64) {
+    (if low90 < 0.01 * value { 0.0 } else { low90 }, high90)
+}
+
+/// Whether a sensor's numbers are good enough for a filter; the worst last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Enough {
+    /// N and K are.
+    Yes,
+    /// N is; of K an upper bound serves.
+    BoundOfWalk,
+    /// Too little is known of them.
+    NotKnown,
+    /// The values are not those of a healthy sensor at rest: a warning says what is wrong.
+    NotAtRest,
+}
+
+impl Enough {
+    /// The verdict on a sensor.
+    #[must_use]
+    pub fn of(sensor: &SensorNoise) -> Self {
+        let checks = &sensor.checks;
+        let faulty = checks.stuck.contains(&true)
+            || checks.saturated.iter().any(|count| *count > 0)
+            || checks.is_held(sensor.stamps.samples);
+        if faulty || advice::moved_throughout(sensor) {
+            return Self::NotAtRest;
+        }
+        let walk = FilterValue::random_walk(sensor).map(|walk| walk.basis);
+        let covered = Factors::random_walk(sensor)
+            .and_then(|factors| factors.interval)
+            .is_some_and(|interval| interval <= 1.0 + Known::ENOUGH);
+        match (Known::of(sensor.pooled.noise_density).is_enough(), walk) {
+            (true, Some(Basis::Estimate)) => Self::Yes,
+            (true, Some(Basis::CoversFlicker)) if covered => Self::Yes,
+            (true, Some(Basis::UpperBound)) => Self::BoundOfWalk,
+            _ => Self::NotKnown,
         }
     }
 }
@@ -82,11 +137,15 @@ impl Grade {
         }
     }
 
-    /// The grade of a gyroscope's bias instability, °/h. The same table has no such number of accelerometers,
-    /// but the constant bias, which is far larger.
+    /// The largest bias instability of a gyroscope of each grade but the last, °/h: our own choice. The same table
+    /// has no such number of accelerometers, but the constant bias, which is far larger.
+    pub const BIAS_INSTABILITY: [f64; 4] = [0.1, 10.0, 60.0, 360.0];
+
+    /// The grade of a gyroscope's bias instability as most datasheets print it, the lowest point of the Allan curve,
+    /// °/h.
     #[must_use]
     pub fn of_bias_instability(degrees_per_hour: f64) -> Self {
-        Self::among([0.1, 10.0, 60.0, 360.0], degrees_per_hour)
+        Self::among(Self::BIAS_INSTABILITY, degrees_per_hour)
     }
 
     fn among(borders: [f64; 4], value: f64) -> Self {
@@ -95,7 +154,8 @@ impl Grade {
     }
 }
 
-/// How long to record next time, so that each axis shows K to 10 % (one standard deviation).
+/// How long to record next time, so that each axis shows K to 10 % (one standard deviation), which is
+/// [`NextRecord::WITHIN`] in the 90 % of all intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NextRecord {
     /// No longer than this one.
@@ -109,6 +169,12 @@ pub enum NextRecord {
 }
 
 impl NextRecord {
+    /// The standard deviation of K that is aimed at, over K.
+    const DEVIATION: f64 = 0.1;
+
+    /// Half the 90 % interval of K of an axis after a record of this length, over K: 1.645 standard deviations.
+    pub const WITHIN: f64 = 1.645 * Self::DEVIATION;
+
     /// The advice for a sensor; all that speaks of the next record quotes it.
     ///
     /// sd(ln K) is √(2N/(K T)) for white noise and a random walk. In the place of a K that does not show
@@ -128,7 +194,7 @@ impl NextRecord {
             }
             Parameter::NotObservable { .. } => return Self::Unknown,
         };
-        let wanted_s = (2.0 * n / (k * 0.1 * 0.1)).max(earliest_s);
+        let wanted_s = (2.0 * n / (k * Self::DEVIATION * Self::DEVIATION)).max(earliest_s);
         match wanted_s {
             wanted if !wanted.is_finite() => Self::Unknown,
             wanted if wanted <= 1.05 * sensor.stamps.span_s => Self::LongEnough,
@@ -145,96 +211,6 @@ fn round_up(seconds: f64) -> f64 {
         _ => 3600.0,
     };
     (seconds / step).ceil() * step
-}
-
-/// How many times a pooled value a filter may need, by what its own numbers leave open.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Margin {
-    /// The upper end of the 90 % interval over the value.
-    pub interval: f64,
-    /// The largest value of an axis over the pooled one; 1 where no axis is above it.
-    pub axes: f64,
-}
-
-impl Margin {
-    /// That of a parameter of the axes and of all together; `None` where there is no value with an interval.
-    #[must_use]
-    pub fn of(axes: [Parameter; 3], pooled: Parameter) -> Option<Self> {
-        let Parameter::Observable { value, high90, .. } = pooled else { return None };
-        if !(high90.is_finite() && value > 0.0) {
-            return None;
-        }
-        let of_axis = |axis| match axis {
-            Parameter::Observable { value, .. } => value,
-            Parameter::NotObservable { .. } => 0.0,
-        };
-        let largest = axes.map(of_axis).into_iter().fold(value, f64::max);
-        Some(Self { interval: high90 / value, axes: largest / value })
-    }
-
-    /// The larger of the two.
-    #[must_use]
-    pub fn most(self) -> f64 {
-        self.interval.max(self.axes)
-    }
-}
-
-/// The random walk to give a filter that has no term for flicker, unit/s/√Hz: the K that makes the bias go as far in
-/// [`Inflation::OVER_S`] as B and K together do, K'²τ/3 = (2 ln 2/π)B² + K²τ/3. `None` where there is no B to cover:
-/// then it is K.
-#[must_use]
-pub fn walk_for_filter(noise: &AxisNoise) -> Option<f64> {
-    let Some(Parameter::Observable { value: flicker, .. }) = noise.bias_instability else {
-        return None;
-    };
-    let walk = match noise.random_walk {
-        Parameter::Observable { value, .. } => value,
-        Parameter::NotObservable { .. } => 0.0,
-    };
-    let flat = 2.0 * std::f64::consts::LN_2 / std::f64::consts::PI * flicker * flicker;
-    Some((walk * walk + 3.0 * flat / Inflation::OVER_S).sqrt())
-}
-
-/// How many times the sensor's own noise was seen here beside it, which a filter has to live with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inflation {
-    /// Of N: what short averaging times show over what N explains. 1 where nothing more is seen.
-    pub noise_density: f64,
-    /// Of K: what the bias drifts by in [`Inflation::OVER_S`] over what K makes it walk.
-    pub random_walk: f64,
-}
-
-impl Inflation {
-    /// Drift and walk are compared over this time, s: as long as a filter goes without a fix.
-    pub const OVER_S: f64 = 100.0;
-
-    /// What this recording shows.
-    #[must_use]
-    pub fn of(sensor: &SensorNoise) -> Self {
-        let value = |parameter| match parameter {
-            Parameter::Observable { value, .. } => value,
-            Parameter::NotObservable { .. } => 0.0,
-        };
-        let (n, k) = (value(sensor.pooled.noise_density), value(sensor.pooled.random_walk));
-        let mut inflation = Self { noise_density: 1.0, random_walk: 1.0 };
-        for d in &sensor.deviation {
-            let beyond = sensor.tau_used_s.is_some_and(|(first, _)| d.tau_s < 0.99 * first);
-            for octave in d.octaves.iter().filter(|o| beyond && o.differences > 0) {
-                let white = octave.deviation() * d.tau_s.sqrt();
-                if n > 0.0 && white > 1.1 * inflation.noise_density * n {
-                    inflation.noise_density = white / n;
-                }
-            }
-        }
-        if let Some(ramp) = sensor.ramp
-            && k > 0.0
-        {
-            let drift = ramp.iter().fold(0.0_f64, |most, r| most.max(r.abs())) * Self::OVER_S;
-            let walk = k * Self::OVER_S.sqrt();
-            inflation.random_walk = (drift / walk).max(1.0);
-        }
-        inflation
-    }
 }
 
 #[cfg(test)]
@@ -260,25 +236,57 @@ mod tests {
         }
     }
 
-    /// 1.5 of the interval; 1.2 of the axes, of which one does not show.
     #[test]
-    fn margins() {
-        let known = |value, high90| Parameter::Observable { value, sd: 0.1, low90: 0.0, high90 };
-        let hidden = Parameter::NotObservable { upper90: 9.0, record_at_least_s: 1.0 };
-        let margin = Margin::of([known(0.9, 1.0), known(1.2, 1.3), hidden], known(1.0, 1.5));
-        assert_eq!(margin, Some(Margin { interval: 1.5, axes: 1.2 }));
-        assert_eq!(Margin::of([hidden; 3], hidden), None);
+    fn what_is_good_enough() {
+        use crate::calibrate::{Options, calibrate};
+        use crate::scene::{Preset, Scene, Simulator};
+
+        let scene = Scene { duration_ns: 60_000_000_000, ..Preset::Mid.scene() };
+        let source = Box::new(Simulator::new(&scene).unwrap());
+        let found = calibrate(source, "simulated", &Options::default(), |_| {}).unwrap();
+        let known = |half| Parameter::Observable {
+            value: 1.0,
+            sd: half / 1.645,
+            low90: 1.0 - half,
+            high90: 1.0 + half,
+        };
+        let hidden = |upper90| Parameter::NotObservable { upper90, record_at_least_s: 1.0 };
+        let mut sensor = found.gyroscope.unwrap();
+        let mut with = |n, k, b| {
+            sensor.pooled.noise_density = n;
+            sensor.pooled.random_walk = k;
+            sensor.pooled.bias_instability = b;
+            sensor.clone()
+        };
+        let sensor = with(known(0.01), known(0.2), None);
+        assert_eq!(Enough::of(&sensor), Enough::Yes);
+        for broken in [
+            SensorNoise { misfit: [false, true, false], ..sensor.clone() },
+            with(known(0.01), known(0.4), None),
+            with(known(0.01), hidden(1.0), None),
+        ] {
+            assert_eq!(Enough::of(&broken), Enough::BoundOfWalk);
+        }
+        let infinite = hidden(f64::INFINITY);
+        for (n, k) in [(known(0.4), known(0.1)), (known(0.01), infinite), (infinite, known(0.1))] {
+            assert_eq!(Enough::of(&with(n, k, None)), Enough::NotKnown);
+        }
+        // Flicker hides K, and is known itself, or is not.
+        let flicker = |half| with(known(0.01), hidden(0.01), Some(known(half)));
+        assert_eq!(
+            [0.2, 0.4].map(flicker).map(|s| Enough::of(&s)),
+            [Enough::Yes, Enough::NotKnown]
+        );
+        let mut stuck = sensor;
+        stuck.checks.stuck[1] = true;
+        assert_eq!(Enough::of(&stuck), Enough::NotAtRest);
     }
 
-    /// B = 1, K = 0.1: 0.01 + 3·0.4413/100 = 0.02324.
+    /// z of a real record: the interval of two sides touches 0, which one of one side does not.
     #[test]
-    fn a_walk_that_covers_flicker() {
-        let known = |value| Parameter::Observable { value, sd: 0.0, low90: value, high90: value };
-        let two = AxisNoise::of_two(known(1.0), known(0.1));
-        assert_eq!(walk_for_filter(&two), None);
-        let noise = AxisNoise { bias_instability: Some(known(1.0)), ..two };
-        let walk = walk_for_filter(&noise).unwrap();
-        assert!((walk * walk - 0.023_238_136).abs() < 1e-9, "{walk}");
+    fn an_interval_that_reaches_zero() {
+        assert_eq!(interval(3.96e-5, 1.97e-8, 7.9e-5), (0.0, 7.9e-5));
+        assert_eq!(interval(4.5e-5, 2.7e-5, 7.0e-5), (2.7e-5, 7.0e-5));
     }
 
     #[test]

@@ -1,14 +1,16 @@
 //! Noise parameters as the programs want them that use them: each in the unit that its program takes.
 //!
-//! A parameter that the record cannot show stands there by its upper 90 % bound, and a comment says so; one of
-//! which nothing is known is a comment alone.
+//! Where the record does not show a parameter well enough, an upper 90 % bound that covers all axes stands there
+//! ([`FilterValue`]), and a comment says so; one of which nothing is known is a comment alone. Nothing is multiplied.
 
 use std::fmt::Write as _;
 
 use imu_core::allan::Parameter;
 
-use crate::calibrate::verdict::walk_for_filter;
-use crate::calibrate::{AxisNoise, Calibration, SensorKind, SensorNoise};
+use super::table::short;
+use crate::calibrate::filter::{Basis, FilterValue};
+use crate::calibrate::one_sample::OneSample;
+use crate::calibrate::{Calibration, SensorKind, SensorNoise};
 
 /// A program's form of the parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,28 +60,18 @@ struct Sensors<'a> {
 /// A value and what to remark about it.
 type Remarked = (f64, &'static str);
 
-/// A value, or its upper bound; none where nothing is known.
-fn value(parameter: Parameter) -> Option<Remarked> {
-    match parameter {
-        Parameter::Observable { value, .. } => Some((value, "")),
-        Parameter::NotObservable { upper90, .. } => {
-            upper90.is_finite().then_some((upper90, "  NOT OBSERVABLE: its upper 90 % bound"))
-        }
-    }
-}
-
-/// N and K of all axes; where there is a bias instability, a walk that covers it, because no program here has a term
-/// for it.
+/// N and K for a filter that takes one of each for all axes.
 fn noise(sensor: &SensorNoise) -> [Option<Remarked>; 2] {
-    [value(sensor.pooled.noise_density), walk(&sensor.pooled)]
-}
-
-/// A random walk for a filter.
-fn walk(noise: &AxisNoise) -> Option<Remarked> {
-    match walk_for_filter(noise) {
-        Some(walk) => Some((walk, "  covers the bias instability too")),
-        None => value(noise.random_walk),
-    }
+    [FilterValue::noise_density(sensor), FilterValue::random_walk(sensor)].map(|found| {
+        let FilterValue { value, basis } = found?;
+        let remark = match basis {
+            Basis::Estimate => "",
+            Basis::Reading => "; a reading without an interval",
+            Basis::CoversFlicker => "; covers the bias instability too",
+            Basis::UpperBound => "; NOT KNOWN WELL: the upper 90 % bound that covers x, y and z",
+        };
+        Some((value, remark))
+    })
 }
 
 /// The line of a key.
@@ -108,7 +100,8 @@ impl Sensors<'_> {
         let mut text = String::from(
             "# For VINS-Mono and VINS-Fusion, which take these as standard deviations of one sample:\n\
              # their covariance grows by (value x dt)^2 a sample, so N is here N sqrt(rate) and K is\n\
-             # K sqrt(rate). They hold for this rate only.\n",
+             # K sqrt(rate). They hold for this rate only. Behind a low-pass filter N sqrt(rate) is more\n\
+             # than one sample scatters, but it is what a sum of samples does, and VINS sums them.\n",
         );
         let _ = writeln!(text, "# rate: {:.3} Hz", self.rate_hz());
         text.push_str(&self.warnings);
@@ -121,7 +114,7 @@ impl Sensors<'_> {
             let root = sensor.stamps.rate_hz.sqrt();
             let [n, k] = noise(sensor).map(|v| v.map(|(value, remark)| (value * root, remark)));
             put(&mut text, &format!("{key}_n"), n, &format!("{unit} a sample"));
-            let unit = format!("{unit}/s a sample: the random walk of the bias");
+            let unit = format!("{unit}/s a sample, the random walk of the bias");
             put(&mut text, &format!("{key}_w"), k, &unit);
         }
         text
@@ -175,8 +168,10 @@ impl Sensors<'_> {
 
     fn ros_covariance(&self) -> String {
         let mut text = String::from(
-            "# For sensor_msgs/Imu: variances of one sample (x, y, z on the diagonal), row by row, as\n\
-             # measured between neighbouring samples. The bias is not in them.\n",
+            "# For sensor_msgs/Imu: variances of one sample (x, y, z on the diagonal), row by row: half the sum\n\
+             # of the Allan variances up to the averaging time that is named, and white noise beyond. What\n\
+             # wanders more slowly is the bias, and not in them. Behind a low-pass filter they are less than\n\
+             # N^2 x rate: neighbouring samples are alike there, which no variance of one sample says.\n",
         );
         text.push_str(&self.warnings);
         for sensor in self.each() {
@@ -184,12 +179,12 @@ impl Sensors<'_> {
                 SensorKind::Gyroscope => ("angular_velocity_covariance", "(rad/s)^2"),
                 SensorKind::Accelerometer => ("linear_acceleration_covariance", "(m/s^2)^2"),
             };
-            let variance = sensor.deviation.first().map(|d| d.octaves.map(|o| o.variance));
-            let variance = variance.filter(|variance| variance.iter().all(|v| *v > 0.0));
-            let _ = match variance {
-                Some([x, y, z]) => {
-                    writeln!(text, "{key}: [{x:.6e}, 0, 0, 0, {y:.6e}, 0, 0, 0, {z:.6e}]  # {unit}")
-                }
+            let _ = match OneSample::of(sensor) {
+                Some(OneSample { variance: [x, y, z], up_to_s }) => writeln!(
+                    text,
+                    "{key}: [{x:.6e}, 0, 0, 0, {y:.6e}, 0, 0, 0, {z:.6e}]  # {unit}, up to {} s",
+                    short(up_to_s)
+                ),
                 None => writeln!(text, "# {key}: of an axis nothing is known ({unit})"),
             };
         }
@@ -215,7 +210,7 @@ impl Sensors<'_> {
             for (name, axis) in
                 [("avg-axis", &sensor.pooled), ("x-axis", x), ("y-axis", y), ("z-axis", z)]
             {
-                let (n, k) = (value(axis.noise_density), value(axis.random_walk));
+                let (n, k) = (shown(axis.noise_density), shown(axis.random_walk));
                 let white = n.map(|(n, remark)| (n * sensor.stamps.rate_hz.sqrt(), remark));
                 // The flat of B is under all of the curve of N and K.
                 let b = axis.bias_instability.map_or(0.0, |b| match b {
@@ -233,7 +228,7 @@ impl Sensors<'_> {
                             writeln!(text, "      {key}_{letter}: {value:.16e}")
                         }
                         Some((value, remark)) => {
-                            writeln!(text, "      {key}_{letter}: {value:.16e}  #{remark}")
+                            writeln!(text, "      {key}_{letter}: {value:.16e}  # {remark}")
                         }
                         None => writeln!(text, "      # {key}_{letter}: nothing is known of it"),
                     };
@@ -241,6 +236,16 @@ impl Sensors<'_> {
             }
         }
         text
+    }
+}
+
+/// A value of an axis, or its upper bound; none where nothing is known.
+fn shown(parameter: Parameter) -> Option<Remarked> {
+    match parameter {
+        Parameter::Observable { value, .. } => Some((value, "")),
+        Parameter::NotObservable { upper90, .. } => {
+            upper90.is_finite().then_some((upper90, "NOT OBSERVABLE: by its upper 90 % bound"))
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use imu_core::allan::Parameter;
 
 use super::Quantity;
 use super::json::AXES;
-use crate::calibrate::verdict::NextRecord;
+use crate::calibrate::verdict::{NextRecord, interval};
 use crate::calibrate::{AxisNoise, Calibration, SensorNoise};
 use crate::scene::display_duration;
 
@@ -44,8 +44,12 @@ fn sensor(text: &mut String, sensor: &SensorNoise) {
         block(text, sensor, quantity, of);
     }
     if let NextRecord::AtLeast(wanted_s) = NextRecord::of(sensor) {
-        let _ =
-            writeln!(text, "  for K of each axis to 10 % record at least {}", duration(wanted_s));
+        let _ = writeln!(
+            text,
+            "  for K of each axis to ±{:.0} % record at least {}",
+            100.0 * NextRecord::WITHIN,
+            duration(wanted_s)
+        );
     }
 }
 
@@ -78,11 +82,13 @@ fn block(
                 "    {name:<26}{value:>12.4e}    a reading, no interval        {}",
                 short(value * twin.per_si)
             ),
-            Parameter::Observable { value, low90, high90, .. } => writeln!(
-                text,
-                "    {name:<26}{value:>12.4e}    {low90:.4e} to {high90:.4e}      {}",
-                short(value * twin.per_si)
-            ),
+            Parameter::Observable { value, low90, high90, .. } => {
+                let (low, high) = interval(value, low90, high90);
+                let low = if low > 0.0 { format!("{low:.4e}") } else { "0".into() };
+                let between = format!("{low} to {high:.4e}");
+                let twin = short(value * twin.per_si);
+                writeln!(text, "    {name:<26}{value:>12.4e}    {between:<24}      {twin}")
+            }
             Parameter::NotObservable { upper90, .. } => writeln!(
                 text,
                 "    {name:<26}not observable: below {upper90:.2e} ({} {})",

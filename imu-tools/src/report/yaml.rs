@@ -6,17 +6,19 @@ use imu_core::allan::Parameter;
 
 use super::table::{duration, short};
 use super::{Quantity, harmless};
-use crate::calibrate::verdict::{Inflation, NextRecord, walk_for_filter};
+use crate::calibrate::filter::{Basis, Factors, FilterValue};
+use crate::calibrate::verdict::{NextRecord, interval};
 use crate::calibrate::{Calibration, SensorKind, SensorNoise};
 
-/// The file, all axes of a sensor pooled. A parameter that the record cannot show has its upper
-/// 90 % bound for a value (Kalibr wants a number above zero), and says so; where there is a bias instability, the
-/// random walk covers it ([`walk_for_filter`]), because Kalibr has no term for it.
+/// The file, all axes of a sensor pooled. A parameter that the record does not show well enough has an upper
+/// 90 % bound of all axes for a value (Kalibr wants a number above zero), and says so; where there is a bias
+/// instability, the random walk covers it, because Kalibr has no term for it ([`FilterValue`]).
 #[must_use]
 pub fn kalibr(calibration: &Calibration) -> String {
     let mut text = format!(
         "# IMU noise for Kalibr, estimated from {} ({:.0} s).\n\
-         # Continuous-time densities; x, y and z pooled. Intervals are of 90 % confidence.\n",
+         # Continuous-time densities; x, y and z pooled. Intervals are of 90 % confidence.\n\
+         # As measured, not multiplied: for a filter in motion make them larger.\n",
         harmless(&calibration.path, ""),
         calibration.span_s
     );
@@ -59,50 +61,53 @@ pub(super) fn topic(sensor: &SensorNoise) -> String {
 fn lines(text: &mut String, kind: SensorKind, sensor: &SensorNoise) {
     let name = kind.name();
     let pooled = &sensor.pooled;
-    for (key, quantity, parameter) in [
-        ("noise_density", Quantity::NoiseDensity(kind), pooled.noise_density),
-        ("random_walk", Quantity::RandomWalk(kind), pooled.random_walk),
+    for (key, quantity, parameter, value) in [
+        (
+            "noise_density",
+            Quantity::NoiseDensity(kind),
+            pooled.noise_density,
+            FilterValue::noise_density(sensor),
+        ),
+        (
+            "random_walk",
+            Quantity::RandomWalk(kind),
+            pooled.random_walk,
+            FilterValue::random_walk(sensor),
+        ),
     ] {
-        let (unit, twin) = (quantity.unit(), quantity.twin());
-        if key == "random_walk"
-            && let Some(walk) = walk_for_filter(pooled)
-        {
-            let _ = writeln!(
-                text,
-                "{name}_{key}: {walk:.6e}  # {unit}; covers bias instability too, which Kalibr has no \
-                 term for: as far in {:.0} s as B and K below go together",
-                Inflation::OVER_S
-            );
-            let _ = writeln!(text, "# {name} {}: {}", quantity.name(), known(quantity, parameter));
+        let unit = quantity.unit();
+        let Some(FilterValue { value, basis }) = value else {
+            let _ = writeln!(text, "# {name}_{key}: nothing is known of it ({unit})");
             continue;
-        }
-        let line = match parameter {
-            Parameter::Observable { value, high90, .. } if high90.is_infinite() => {
-                format!("{name}_{key}: {value:.6e}  # {unit}, a reading without an interval")
-            }
-            Parameter::Observable { value, low90, high90, .. } => format!(
-                "{name}_{key}: {value:.6e}  # {unit}, {low90:.3e} to {high90:.3e}; {} {}",
-                short(value * twin.per_si),
-                twin.unit
+        };
+        let remark = match basis {
+            Basis::Estimate => between(quantity, parameter),
+            Basis::Reading => ", a reading without an interval".into(),
+            Basis::CoversFlicker => format!(
+                "; covers bias instability too, which Kalibr has no term for: as far in {:.0} s as B and K \
+                 below go together",
+                Factors::OVER_S
             ),
-            Parameter::NotObservable { upper90, .. } if upper90.is_finite() => {
+            Basis::UpperBound => {
                 let next = match NextRecord::of(sensor) {
                     NextRecord::AtLeast(wanted_s) => {
                         format!("; record at least {}", duration(wanted_s))
                     }
                     _ => String::new(),
                 };
+                let why = match parameter {
+                    Parameter::NotObservable { .. } => "NOT OBSERVABLE",
+                    Parameter::Observable { .. } => "NOT KNOWN WELL",
+                };
                 format!(
-                    "{name}_{key}: {upper90:.6e}  # {unit}; NOT OBSERVABLE in this record: this is \
-                     its upper 90 % bound{next}"
+                    "; {why} in this record: this is the upper 90 % bound that covers x, y and z{next}"
                 )
             }
-            Parameter::NotObservable { .. } => {
-                format!("# {name}_{key}: nothing is known of it ({unit})")
-            }
         };
-        text.push_str(&line);
-        text.push('\n');
+        let _ = writeln!(text, "{name}_{key}: {value:.6e}  # {unit}{remark}");
+        if matches!(basis, Basis::CoversFlicker | Basis::UpperBound) {
+            let _ = writeln!(text, "# {name} {}: {}", quantity.name(), known(quantity, parameter));
+        }
     }
     // What Kalibr has no key for.
     for (quantity, of) in Quantity::all(kind).into_iter().skip(2) {
@@ -112,17 +117,26 @@ fn lines(text: &mut String, kind: SensorKind, sensor: &SensorNoise) {
     }
 }
 
-/// A parameter in a comment: value, interval, units.
+/// The interval of a value, and the value in the unit of datasheets.
+fn between(quantity: Quantity, parameter: Parameter) -> String {
+    let Parameter::Observable { value, low90, high90, .. } = parameter else {
+        return String::new();
+    };
+    let (low, high) = interval(value, low90, high90);
+    let twin = quantity.twin();
+    let low = if low > 0.0 { format!("{low:.3e}") } else { "0".into() };
+    format!(", {low} to {high:.3e}; {} {}", short(value * twin.per_si), twin.unit)
+}
+
+/// A parameter in a comment: value, unit, interval.
 fn known(quantity: Quantity, parameter: Parameter) -> String {
-    let (unit, twin) = (quantity.unit(), quantity.twin());
+    let unit = quantity.unit();
     match parameter {
-        Parameter::Observable { value, low90, high90, .. } => format!(
-            "{value:.3e} {unit} ({low90:.3e} to {high90:.3e}); {} {}",
-            short(value * twin.per_si),
-            twin.unit
-        ),
+        Parameter::Observable { value, .. } => {
+            format!("{value:.3e} {unit}{}", between(quantity, parameter))
+        }
         Parameter::NotObservable { upper90, .. } if upper90.is_finite() => {
-            format!("not observable, below {upper90:.3e} {unit}")
+            format!("not observable, all axes together below {upper90:.3e} {unit}")
         }
         Parameter::NotObservable { .. } => "nothing is known of it".into(),
     }

@@ -42,9 +42,9 @@ impl CsvReader {
             let at = |axis| layout.columns.iter().position(|c| *c == column(axis));
             match [at(0), at(1), at(2)].map(|at| at.map(|at| at + 1)) {
                 [Some(x), Some(y), Some(z)] if y == x + 1 && z == y + 1 => {
-                    format!("columns {x} to {z}")
+                    format!("columns {x} to {z} (x, y, z)")
                 }
-                [Some(x), Some(y), Some(z)] => format!("columns {x}, {y} and {z}"),
+                [Some(x), Some(y), Some(z)] => format!("columns {x}, {y}, {z} (x, y, z)"),
                 _ => String::new(),
             }
         };

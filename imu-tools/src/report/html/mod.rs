@@ -26,6 +26,7 @@ use super::json::AXES;
 use super::plot::{self, Figure, font_base64};
 use super::table::{duration, short};
 use super::{Quantity, Twin, harmless};
+use crate::calibrate::verdict::interval;
 use crate::calibrate::{Calibration, SensorNoise};
 
 /// Colours of the page and of the pictures in it.
@@ -39,6 +40,7 @@ pub fn page(calibration: &Calibration) -> String {
     let body = html! {
         h1 { "IMU noise" }
         p.lead { (words::recorded(calibration)) }
+        p.small { (words::TERMS) }
         (verdict(&sensors))
         (warnings(calibration))
         @for sensor in &sensors { (numbers(sensor)) }
@@ -69,8 +71,7 @@ fn document(title: &str, body: &Markup) -> String {
                 (body)
                 footer {
                     p {
-                        "Intervals are of 90 % confidence. N and K are continuous-time densities. \
-                         Lettering: Imu Sans, a subset of DejaVu Sans."
+                        "N and K are continuous-time densities. Lettering: Imu Sans, a subset of DejaVu Sans."
                     }
                 }
             }
@@ -82,6 +83,7 @@ fn document(title: &str, body: &Markup) -> String {
 fn verdict(sensors: &[&SensorNoise]) -> Markup {
     html! {
         h2 { "Is it good enough?" }
+        p.lead { (words::overall(sensors)) }
         @for sensor in sensors {
             p { b { (words::capital(sensor.kind.name())) ". " } (words::verdict(sensor)) }
         }
@@ -109,7 +111,7 @@ fn numbers(sensor: &SensorNoise) -> Markup {
         @for (quantity, of) in Quantity::fitted(sensor) {
             h3 { (words::capital(quantity.name())) }
             @if let Some(pooled) = of(&sensor.pooled) {
-                p { (words::meaning(quantity, pooled, &sensor.pooled)) }
+                p { (words::meaning(quantity, pooled, sensor)) }
             }
             div.wide {
                 table {
@@ -129,8 +131,11 @@ fn numbers(sensor: &SensorNoise) -> Markup {
                     }
                 }
             }
+            @if let Some(sentence) = words::row_of_all(sensor.axes.each_ref().map(of), of(&sensor.pooled)) {
+                p.small { (sentence) }
+            }
         }
-        p { (words::datasheet(sensor)) }
+        p { (words::lowest_point(sensor)) }
     }
 }
 
@@ -158,8 +163,10 @@ fn row(name: &str, parameter: Option<Parameter>, quantity: Quantity) -> Markup {
                 Parameter::Observable { value, low90, high90, .. } => {
                     td { (short(value)) }
                     td {
-                        @if high90.is_finite() { (short(low90)) " to " (short(high90)) }
-                        @else { "a reading, none" }
+                        @if high90.is_finite() {
+                            @let (low, high) = interval(value, low90, high90);
+                            (short(low)) " to " (short(high))
+                        } @else { "a reading, none" }
                     }
                     @for twin in twins() { td { (short(value * twin.per_si)) } }
                 }
@@ -191,6 +198,7 @@ fn picture(figure: &Figure, caption: &str) -> Markup {
     html! {
         @if !figure.is_empty() {
             figure {
+                p.hint { "Wider than this screen: the plot scrolls sideways." }
                 div.plot { (PreEscaped(figure.inline())) }
                 div.keys { @for key in figure.keys() { (PreEscaped(key)) } }
                 figcaption { (caption) }
@@ -215,26 +223,26 @@ fn filters(calibration: &Calibration, sensors: &[&SensorNoise]) -> Markup {
                 thead {
                     tr {
                         th {}
-                        th { "upper end of its 90 % interval" }
+                        th { "upper end of its interval" }
                         th { "noisiest axis" }
                         th { "seen beside it" }
-                        th { "at least" }
+                        th { "advice: multiply by" }
                     }
                 }
                 tbody {
-                    @for row in sensors.iter().flat_map(|sensor| words::margins(sensor)) {
+                    @for row in sensors.iter().flat_map(|sensor| words::factors(sensor)) {
                         tr { @for cell in row { td { (cell) } } }
                     }
                 }
             }
         }
+        p { b { "Multiply what the blocks hold by the last column before you use it." } (words::ADVICE) }
         p { "What was found beside white noise and a random walk:" }
         ul {
-            @for sensor in sensors {
-                @for sentence in words::found(sensor, warned(calibration, sensor)) { li { (sentence) } }
+            @for sentence in words::found(sensors, |sensor| warned(calibration, sensor)) {
+                li { (sentence) }
             }
         }
-        p { (words::NOT_KNOWABLE) }
         @for (program, file, form) in forms {
             details open {
                 summary { (program) " (" (file) ")" }
@@ -293,12 +301,12 @@ mod tests {
     fn what_was_found_is_not_nothing() {
         let mut calibration = calibration(600, "a");
         let clean = page(&calibration);
-        assert!(clean.contains("°/s/√Hz") && clean.contains("No recording at rest can tell"));
+        assert!(clean.contains("°/s/√Hz") && clean.contains("no recording at rest can know"));
         assert_eq!(clean.matches("<details open>").count(), 5);
         assert!(!clean.contains("more than was fitted"));
         calibration.gyroscope.as_mut().unwrap().misfit = [true, false, true];
         let page = page(&calibration);
-        assert!(page.contains("gyroscope: more than was fitted, on axes x, z"), "{page}");
+        assert!(page.contains("gyroscope: more than was fitted, on axes x and z"), "{page}");
         assert!(page.contains("or more: see the warnings"), "{page}");
         assert!(!page.contains("gyroscope: nothing"), "{page}");
     }

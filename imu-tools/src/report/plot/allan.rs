@@ -184,7 +184,8 @@ fn fitted(chart: &mut Chart, sensor: &SensorNoise, (first, last): (f64, f64)) {
     }
     if k > 0.0 {
         let unit = Quantity::RandomWalk(kind).unit();
-        chart.mark("mark", (3.0, k), false, &format!("K = {} {unit}, at 3 s", short(k)));
+        // Below its own line, which rises to the right.
+        chart.mark("mark", (3.0, k), true, &format!("K = {} {unit}, at 3 s", short(k)));
     }
     if q > 0.0 {
         let unit = Quantity::Quantisation(kind).unit();
@@ -205,7 +206,7 @@ fn fitted(chart: &mut Chart, sensor: &SensorNoise, (first, last): (f64, f64)) {
         // On the left, below the curve, where nothing else is written.
         let tau = first * (last / first).powf(0.2);
         let flat = Curve { b, ..Curve::default() }.at(1.0);
-        let text = format!("0.664 B, B = {} {}", short(b), kind.unit());
+        let text = format!("0.664 B, with B = {} {}", short(b), kind.unit());
         chart.mark("mark", (tau, flat), false, &text);
     }
 }
