@@ -68,7 +68,7 @@ fn noise(sensor: &SensorNoise) -> [Option<Remarked>; 2] {
             Basis::Estimate => "",
             Basis::Reading => "; a reading without an interval",
             Basis::CoversFlicker => "; covers the bias instability too",
-            Basis::UpperBound => "; NOT KNOWN WELL: the upper 90 % bound that covers x, y and z",
+            Basis::UpperBound => "; NOT KNOWN WELL: an upper 90 % bound of all axes",
         };
         Some((value, remark))
     })

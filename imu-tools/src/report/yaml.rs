@@ -99,9 +99,7 @@ fn lines(text: &mut String, kind: SensorKind, sensor: &SensorNoise) {
                     Parameter::NotObservable { .. } => "NOT OBSERVABLE",
                     Parameter::Observable { .. } => "NOT KNOWN WELL",
                 };
-                format!(
-                    "; {why} in this record: this is the upper 90 % bound that covers x, y and z{next}"
-                )
+                format!("; {why} in this record: an upper 90 % bound of all axes{next}")
             }
         };
         let _ = writeln!(text, "{name}_{key}: {value:.6e}  # {unit}{remark}");

@@ -218,15 +218,15 @@ fn filters(calibration: &Calibration, sensors: &[&SensorNoise]) -> Markup {
     html! {
         h2 { "What to put into your filter" }
         p { (words::HERE) }
-        div.wide {
+        div.wide.factors {
             table {
                 thead {
                     tr {
                         th {}
+                        th { "advice: multiply by" }
                         th { "upper end of its interval" }
                         th { "noisiest axis" }
                         th { "seen beside it" }
-                        th { "advice: multiply by" }
                     }
                 }
                 tbody {
@@ -236,7 +236,7 @@ fn filters(calibration: &Calibration, sensors: &[&SensorNoise]) -> Markup {
                 }
             }
         }
-        p { b { "Multiply what the blocks hold by the last column before you use it." } (words::ADVICE) }
+        p { b { "Multiply what the blocks hold by this advice before you use it." } (words::ADVICE) }
         p { "What was found beside white noise and a random walk:" }
         ul {
             @for sentence in words::found(sensors, |sensor| warned(calibration, sensor)) {

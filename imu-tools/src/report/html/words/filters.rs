@@ -7,18 +7,17 @@ use crate::calibrate::SensorNoise;
 use crate::calibrate::filter::{Basis, Factors, FilterValue, walk_for_filter};
 use crate::report::Quantity;
 
-pub(in super::super) const HERE: &str = "The blocks below are not multiplied by anything. Three columns say what this recording itself asks for: how \
-     much larger the true value may be, how much noisier the noisiest axis is than the value in the blocks, and what \
-     else was seen.";
+pub(in super::super) const HERE: &str = "The blocks below are not multiplied by anything. The last three columns say what this recording itself asks \
+     for: how much larger the true value may be, how much noisier the noisiest axis is, and what else was seen.";
 
-pub(in super::super) const ADVICE: &str = " The last column is twice the largest of the three. The 2 stands for what no recording at rest can know: \
-     vibration, a bias that follows temperature, errors of scale and alignment (half a per cent of 1 rad/s is \
-     0.005 rad/s), time stamps that are off. For a cheap sensor on a drone, a car or an engine take 5 to 10 in its \
-     place. Too large costs a filter a little accuracy; too small, it trusts errors and may diverge. If yours shows \
-     its innovations (measured minus predicted), raise the factor until they are no larger than it expects.";
+pub(in super::super) const ADVICE: &str = " It is twice the largest of the three. The 2 stands for what no recording at rest can know: vibration, a bias \
+     that follows temperature, errors of scale and alignment, time stamps that are off. For a cheap sensor on a \
+     drone, a car or an engine take 5 to 10 in its place. Too large costs a filter a little accuracy; too small, \
+     it trusts errors and may diverge. If yours shows its innovations (measured minus predicted), raise the \
+     factor until they are no larger than it expects.";
 
-/// By how much N and K of a sensor should grow: name, by the interval, by the noisiest axis, by what was seen beside,
-/// and what to multiply by.
+/// By how much N and K of a sensor should grow: name, what to multiply by, and what for: by the interval, by the noisiest
+/// axis, by what was seen beside.
 pub(in super::super) fn factors(sensor: &SensorNoise) -> [[String; 5]; 2] {
     let basis = |value: Option<FilterValue>| value.map(|value| value.basis);
     [
@@ -37,7 +36,7 @@ pub(in super::super) fn factors(sensor: &SensorNoise) -> [[String; 5]; 2] {
         };
         let none = || "–".to_owned();
         let Some(factors) = factors else {
-            return [name, none(), none(), none(), "not known".into()];
+            return [name, "not known".into(), none(), none(), none()];
         };
         let number = |factor: Option<f64>| match (factor, basis) {
             (Some(factor), _) => format!("{factor:.2}"),
@@ -50,7 +49,7 @@ pub(in super::super) fn factors(sensor: &SensorNoise) -> [[String; 5]; 2] {
         let misfit = sensor.misfit.contains(&true);
         let advised =
             if misfit { format!("{advised}, or more: see the warnings") } else { advised };
-        [name, number(factors.interval), number(factors.axes), seen, advised]
+        [name, advised, number(factors.interval), number(factors.axes), seen]
     })
 }
 

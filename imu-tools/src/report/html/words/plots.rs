@@ -13,6 +13,6 @@ pub(in super::super) const RESIDUAL: &str = "Measured over fitted, a number with
      miss it by chance. Below 1 on the left: a low-pass filter. Above 1 on the right: drift, temperature or motion. \
      Above 1 in the middle and below it on the right: flicker that was not fitted.";
 
-pub(in super::super) const SIGNAL: &str = "The signal about its mean: the band is its range, the line its mean. Where the bands of the axes lie \
-     on each other they look grey. Violet, if there is any: moved, touched, or a sensor that hung and repeated \
+pub(in super::super) const SIGNAL: &str = "The signal about its mean: the band is its range, the line its mean. Bands that lie on each other look \
+     grey. Violet, if there is any: moved, touched, or a sensor that hung and repeated \
      itself. Yellow: the sensor warmed up. The warnings say what was left out.";

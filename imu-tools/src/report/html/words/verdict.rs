@@ -73,7 +73,7 @@ fn walk(sensor: &SensorNoise) -> String {
         }
         (Basis::Estimate, _) => "The walk of the bias is known.".into(),
         (Basis::CoversFlicker, _) => format!(
-            "Its bias shows flicker (B), which hides the walk K. A filter gets {value} {unit}, a walk that \
+            "Its bias shows flicker (B), which hides the walk K. Filters are given {value} {unit}, a walk that \
              covers both."
         ),
         (Basis::UpperBound, _) => {
@@ -83,7 +83,9 @@ fn walk(sensor: &SensorNoise) -> String {
             } else {
                 roughly(sensor)
             };
-            format!("{seen}. A filter gets {value} {unit}, an upper bound that covers all axes.")
+            format!(
+                "{seen}. Filters are given {value} {unit}, an upper bound that covers all axes."
+            )
         }
     }
 }
