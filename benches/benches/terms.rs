@@ -43,7 +43,8 @@ fn terms(c: &mut Criterion) {
         "constant_bias": ConstantBias { constant_bias: 0.1 },
         "rate_ramp": RateRamp { rate_ramp: 1e-6 },
         "temperature_ramp": TemperatureRamp { coefficient: 1e-3, start: -5.0, rate: 0.02 },
-        "warm_up": WarmUp { coefficient: 1e-3, start: -5.0, rise: 25.0, time_constant: 180.0 },
+        // So slow that it does not decay into subnormal numbers, on which processors take longer, while it is timed.
+        "warm_up": WarmUp { coefficient: 1e-3, start: -5.0, rise: 25.0, time_constant: 1e7 },
         "sinusoid": Sinusoid { amplitude: 0.5, frequency: 37.3, phase: 0.0 },
         "band_vibration": band,
         "band_vibration_mean": IntervalMean(band),
