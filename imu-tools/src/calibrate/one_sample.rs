@@ -5,7 +5,7 @@
 //! orthogonal decomposition of Haar 1910: a pair of block means holds half of its AVAR), whatever the noise is; what
 //! is left of white noise in that mean is half of the last octave once more. So it is exact for white noise, and right
 //! behind a low-pass filter too, where neighbours resemble each other and the first octave alone is too small. It stops
-//! at τ = [`LONGEST_S`]: slower wandering is the bias, which filters estimate and do not take for noise.
+//! at τ = 10 s: slower wandering is the bias, which filters estimate and do not take for noise.
 
 use super::SensorNoise;
 

@@ -87,7 +87,7 @@ fn block(
                 let low = if low > 0.0 { format!("{low:.4e}") } else { "0".into() };
                 let between = format!("{low} to {high:.4e}");
                 let twin = short(value * twin.per_si);
-                writeln!(text, "    {name:<26}{value:>12.4e}    {between:<24}      {twin}")
+                writeln!(text, "    {name:<26}{value:>12.4e}    {between:<22}      {twin}")
             }
             Parameter::NotObservable { upper90, .. } => writeln!(
                 text,
