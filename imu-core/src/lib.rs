@@ -6,14 +6,22 @@
 extern crate std;
 
 pub mod allan;
+pub mod delta;
 mod error;
+pub mod integrate;
 pub mod noise;
 mod resonator;
+pub mod sample;
 mod scalar;
 pub mod sensor;
 pub mod so3;
+pub mod state;
+pub mod time;
 pub mod trajectory;
+mod vector;
+pub mod world;
 
 pub use error::Error;
 pub use nalgebra;
 pub use scalar::Real;
+pub use state::{Compensated, State};

@@ -21,6 +21,7 @@
 //! ```
 
 use crate::Real;
+use crate::vector::{cross, dot};
 use nalgebra::{Quaternion, Vector3};
 
 /// Square of the half angle, in rad², up to which polynomials are right to rounding: an angle of 0.7 rad.
@@ -32,8 +33,14 @@ const SMALL: f64 = 0.35 * 0.35;
 /// 2.3e-16 in `f64`; above it the rounding of the angle, 3e-7 and 6e-16 at a full turn. A rotation of more than 1e18 rad
 /// (`f32`; 1e150 in `f64`), or one that is not finite, gives NaN.
 #[must_use]
+#[inline]
 pub fn exp<T: Real>(rotation: Vector3<T>) -> Quaternion<T> {
-    let half = rotation * T::from_f64(0.5);
+    exp_of_half(rotation * T::from_f64(0.5))
+}
+
+/// The rotation by twice a vector: who multiplies by a time anyway saves three multiplications.
+#[inline(always)]
+pub(crate) fn exp_of_half<T: Real>(half: Vector3<T>) -> Quaternion<T> {
     let square = dot(&half, &half);
     let (cos, sinc) = if square < T::from_f64(SMALL) { small(square) } else { large(square) };
     Quaternion::new(cos, half.x * sinc, half.y * sinc, half.z * sinc)
@@ -123,9 +130,69 @@ pub fn inverse<T: Real>(q: &Quaternion<T>) -> Quaternion<T> {
 #[must_use]
 #[inline]
 pub fn rotate<T: Real>(ab: &Quaternion<T>, b: &Vector3<T>) -> Vector3<T> {
+    let (w, v) = (ab.coords.w, imaginary(ab));
+    let once = cross(&v, b);
+    let t = once + once;
+    // In the order that multiply-and-add instructions like.
+    Vector3::new(
+        b.x + w * t.x + v.y * t.z - v.z * t.y,
+        b.y + w * t.y + v.z * t.x - v.x * t.z,
+        b.z + w * t.z + v.x * t.y - v.y * t.x,
+    )
+}
+
+/// How far a rotation carries a point: `q_ab b q_ab* − b`, right to rounding of its own size however small the angle.
+#[must_use]
+#[inline]
+pub fn displacement<T: Real>(ab: &Quaternion<T>, b: &Vector3<T>) -> Vector3<T> {
     let v = imaginary(ab);
-    let twice = cross(&v, b) * T::from_u32(2);
-    b + twice * ab.coords.w + cross(&v, &twice)
+    let once = cross(&v, b);
+    let twice = once + once;
+    twice * ab.coords.w + cross(&v, &twice)
+}
+
+/// A unit quaternion less 1, right to rounding of its own size however small the angle.
+///
+/// Its real part is √(1 − |v|²) − 1, below 0.7 rad by the binomial series of |v|²; above, −|v|²/(1 + w), or the plain
+/// difference where w is below ½. It takes |v| at its word: the real part need not agree with it to the last digit.
+#[must_use]
+#[inline]
+pub fn less_one<T: Real>(q: &Quaternion<T>) -> Quaternion<T> {
+    let v = imaginary(q);
+    let x = dot(&v, &v);
+    let w = q.coords.w;
+    let real = if x < T::from_f64(SMALL) && w > T::ZERO {
+        let terms = if is_single::<T>() { 7 } else { BINOMIAL.len() };
+        -x * BINOMIAL
+            .iter()
+            .take(terms)
+            .rev()
+            .fold(T::ZERO, |sum, term| sum * x + T::from_f64(*term))
+    } else if w > T::from_f64(0.5) {
+        -x / (T::ONE + w)
+    } else {
+        w - T::ONE
+    };
+    Quaternion::new(real, v.x, v.y, v.z)
+}
+
+/// Coefficients of (1 − √(1 − x))/x.
+const BINOMIAL: [f64; 16] = {
+    let mut series = [0.5; 16];
+    let mut n = 1;
+    while n < series.len() {
+        // c(n+1) = c(n) (2n − 1)/(2n + 2)
+        series[n] = series[n - 1] * (2 * n - 1) as f64 / (2 * n + 2) as f64;
+        n += 1;
+    }
+    series
+};
+
+/// |q|.
+#[must_use]
+pub fn length<T: Real>(q: &Quaternion<T>) -> T {
+    let c = &q.coords;
+    (c.w * c.w + c.x * c.x + c.y * c.y + c.z * c.z).sqrt()
 }
 
 /// A quaternion near unit length taken nearer: q(1.5 − 0.5|q|²), one step of Newton's for 1/|q|.
@@ -146,16 +213,6 @@ fn is_single<T: Real>() -> bool {
 #[inline]
 fn imaginary<T: Real>(q: &Quaternion<T>) -> Vector3<T> {
     Vector3::new(q.coords.x, q.coords.y, q.coords.z)
-}
-
-#[inline]
-fn dot<T: Real>(a: &Vector3<T>, b: &Vector3<T>) -> T {
-    a.x * b.x + a.y * b.y + a.z * b.z
-}
-
-#[inline]
-fn cross<T: Real>(a: &Vector3<T>, b: &Vector3<T>) -> Vector3<T> {
-    Vector3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 }
 
 #[cfg(test)]

@@ -168,3 +168,27 @@ proptest! {
         prop_assert!((length - 1.0).abs() <= 1.51 * off * off + 4e-16);
     }
 }
+
+/// q − 1 and R(b) − b beside the same in twice as many digits: in single precision beside double.
+#[test]
+fn small_differences_keep_their_digits() {
+    for rotation in rotations(6.2) {
+        let rotation = single(rotation);
+        let q = exp(rotation);
+        let in_double = exact(double(rotation));
+        // To 2 units of its own size below 0.7 rad, and to the rounding of the angle above.
+        let small = norm(double(rotation)) < 0.7;
+        let less = double_quaternion(less_one(&q)).coords;
+        let mut wanted = in_double.coords;
+        // cos a − 1 = −2 sin² a/2, of a = θ/2
+        wanted.w = -2.0 * (norm(double(rotation)) / 4.0).sin().powi(2);
+        let size = norm(double(rotation)).min(1.0);
+        let limit = if small { 2.4e-7 * size } else { 4e-7 };
+        assert!((less - wanted).abs().max() <= limit, "{rotation:?}");
+
+        let b = Vector3::new(0.3_f32, -0.4, 0.5);
+        let there = double(displacement(&q, &b));
+        let exactly = rotate(&in_double, &double(b)) - double(b);
+        assert!((there - exactly).abs().max() <= if small { 3.6e-7 * size } else { 1e-6 });
+    }
+}

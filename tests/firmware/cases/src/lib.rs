@@ -13,6 +13,7 @@ use imu_core::Real;
 mod edf;
 mod fit;
 pub mod inputs;
+mod integrate;
 mod ladder;
 mod noise;
 mod scalar;
@@ -76,6 +77,10 @@ pub const CASES: &[Case] = &[
     Case { name: "sensor steps f64", run: sensor::cost::<f64> },
     Case { name: "so3 f32", run: so3::case::<f32> },
     Case { name: "so3 f64", run: so3::case::<f64> },
+    Case { name: "integrate f32", run: integrate::case::<f32> },
+    Case { name: "integrate f64", run: integrate::case::<f64> },
+    Case { name: "integrate steps f32", run: integrate::cost_in_single },
+    Case { name: "integrate steps f64", run: integrate::cost_in_double },
     Case { name: "trajectory f32", run: trajectory::case::<f32> },
     Case { name: "trajectory f64", run: trajectory::case::<f64> },
     Case { name: "Allan f32 1", run: ladder::bits::<f32, 1, 1> },
