@@ -5,6 +5,7 @@
 pub mod calibrate;
 pub mod cli;
 pub mod error;
+pub mod integrate;
 pub mod output;
 pub mod recording;
 pub mod report;

@@ -8,6 +8,7 @@ mod calibrate;
 mod convert;
 mod demo;
 mod info;
+mod integrate;
 mod progress;
 mod reading;
 mod simulate;
@@ -40,6 +41,7 @@ enum Command {
     Convert(convert::Convert),
     Demo(demo::Demo),
     Info(info::Info),
+    Integrate(integrate::Integrate),
     Simulate(simulate::Simulate),
     Tradeoff(tradeoff::Tradeoff),
 }
@@ -61,6 +63,7 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Convert(convert) => convert.run(),
         Command::Demo(demo) => demo.run(),
         Command::Info(info) => info.run(),
+        Command::Integrate(integrate) => integrate.run(),
         Command::Simulate(simulate) => simulate.run(),
         Command::Tradeoff(tradeoff) => tradeoff.run(),
     };

@@ -2,9 +2,11 @@
 //!
 //! TUM's: `timestamp tx ty tz qx qy qz qw`, blanks between, time in seconds, lines with `#` passed
 //! over (Sturm et al. 2012). EuRoC's ground truth: a table whose header names `p_RS_R_x` … and
-//! `q_RS_w` …, time in nanoseconds (Burri et al. 2016); TUM-VI's `mocap0/data.csv` likewise.
+//! `q_RS_w` …, time in nanoseconds (Burri et al. 2016); TUM-VI's `mocap0/data.csv` likewise. The truth of
+//! `imu simulate` is such a table too; where its clock errs, rows have the stamp of the recording, and those of lost
+//! samples are passed over.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::csv::dialect::Dialect;
 use super::csv::number;
@@ -24,6 +26,10 @@ pub struct Pose {
     pub position: [f64; 3],
     /// The rotation from body to world as a quaternion x, y, z, w.
     pub orientation: [f64; 4],
+    /// Metres a second, in the world's axes, where the table has it.
+    pub velocity: Option<[f64; 3]>,
+    /// What gyroscope (rad/s) and accelerometer (m/s²) read too much, where the table has it.
+    pub bias: Option<([f64; 3], [f64; 3])>,
 }
 
 /// A trajectory being read, front to back.
@@ -39,9 +45,17 @@ struct Format {
     dialect: Dialect,
     /// Power of ten between its time and nanoseconds.
     exponent: u32,
+    /// The column of its time.
+    time: usize,
     position: [usize; 3],
     /// x, y, z, w.
     orientation: [usize; 4],
+    velocity: Option<[usize; 3]>,
+    bias: Option<([usize; 3], [usize; 3])>,
+    /// Rows without a stamp are passed over.
+    unstamped: bool,
+    /// It holds angular rates and specific forces as well.
+    imu: bool,
 }
 
 impl Format {
@@ -71,22 +85,40 @@ impl Format {
             .collect();
         let at = |kind: &str, axis: &str| {
             names.iter().position(|name| {
-                let mut words = name.split('_');
-                words.next() == Some(kind) && words.next_back() == Some(axis)
+                let rest = name.strip_prefix(kind).and_then(|rest| rest.strip_prefix('_'));
+                rest.is_some_and(|rest| rest.split('_').any(|word| word == axis))
             })
         };
+        let three = |kind: &str| Some([at(kind, "x")?, at(kind, "y")?, at(kind, "z")?]);
+        let either = |euroc: &str, own: &str| three(euroc).or_else(|| three(own));
+        let stamp = names.iter().position(|name| *name == "stamp_ns");
         Some(Self {
             dialect,
             exponent: 0,
-            position: [at("p", "x")?, at("p", "y")?, at("p", "z")?],
+            time: stamp.unwrap_or(0),
+            position: three("p")?,
             orientation: [at("q", "x")?, at("q", "y")?, at("q", "z")?, at("q", "w")?],
+            velocity: three("v"),
+            bias: either("b_w", "gyro_bias").zip(either("b_a", "accel_bias")),
+            unstamped: stamp.is_some(),
+            imu: three("rate").is_some() && three("force").is_some(),
         })
     }
 
     /// TUM's: eight numbers, the last four of them a rotation.
     fn plain(row: &[u8]) -> Option<Self> {
         let dialect = Dialect::of(row);
-        let format = Self { dialect, exponent: 9, position: [1, 2, 3], orientation: [4, 5, 6, 7] };
+        let format = Self {
+            dialect,
+            exponent: 9,
+            time: 0,
+            position: [1, 2, 3],
+            orientation: [4, 5, 6, 7],
+            velocity: None,
+            bias: None,
+            unstamped: false,
+            imu: false,
+        };
         let pose = format.pose(row)?;
         let length = pose.orientation.iter().map(|q| q * q).sum::<f64>().sqrt();
         // Six decimals are the least that such files have.
@@ -98,11 +130,23 @@ impl Format {
         let number = |at: usize| fields.get(at).and_then(|field| number::value(field));
         let [x, y, z] = self.position.map(number);
         let [qx, qy, qz, qw] = self.orientation.map(number);
+        let three = |at: [usize; 3]| {
+            let [x, y, z] = at.map(number);
+            Some([x?, y?, z?])
+        };
+        let bias = self.bias.and_then(|(rate, force)| three(rate).zip(three(force)));
         Some(Pose {
-            stamp_ns: number::nanoseconds(fields.first()?, self.exponent)?,
+            stamp_ns: number::nanoseconds(fields.get(self.time)?, self.exponent)?,
             position: [x?, y?, z?],
             orientation: [qx?, qy?, qz?, qw?],
+            velocity: self.velocity.and_then(three),
+            bias,
         })
+    }
+
+    /// Whether a row is one of a sample that was lost.
+    fn is_lost(&self, row: &[u8]) -> bool {
+        self.unstamped && self.dialect.fields(row).nth(self.time).is_some_and(<[u8]>::is_empty)
     }
 }
 
@@ -118,7 +162,7 @@ impl Poses {
     /// Whether a file begins as a trajectory does.
     pub(super) fn are_in(input: &mut Input) -> Result<bool, Error> {
         input.fill(AHEAD)?;
-        Ok(Format::of(input.at_hand()).is_some())
+        Ok(Format::of(input.at_hand()).is_some_and(|format| !format.imu))
     }
 
     /// Reads the trajectory in `input`.
@@ -162,10 +206,11 @@ impl Poses {
             let pose = self.format.pose(row);
             // A header without # is the first line.
             let header = self.line == 1 && pose.is_none();
+            let lost = pose.is_none() && self.format.is_lost(row);
             self.input.consume(len);
             match pose {
                 Some(pose) if !aside => return Ok(Some(pose)),
-                None if !aside && !header => {
+                None if !aside && !header && !lost => {
                     if !whole {
                         return Ok(None);
                     }
@@ -193,6 +238,20 @@ impl Poses {
     }
 }
 
+/// The truth that stands beside a recording: `NAME.truth.csv` or `NAME.truth.tum` beside `NAME.bag` and the like, EuRoC's
+/// and TUM-VI's folders of ground truth beside the IMU's.
+#[must_use]
+pub fn beside(recording: &Path) -> Option<PathBuf> {
+    const FOLDERS: [&str; 2] = ["state_groundtruth_estimate0", "mocap0"];
+    let named = ["truth.csv", "truth.tum"].map(|ending| recording.with_extension(ending));
+    let is_euroc = recording.is_dir() || recording.file_name().is_some_and(|n| n == "data.csv");
+    let inside = [recording.join("mav0"), recording.to_owned()];
+    let around = recording.ancestors().skip(1).take(2).map(Path::to_owned);
+    let folders = inside.into_iter().chain(around).filter(|_| is_euroc);
+    let truths = folders.flat_map(|at| FOLDERS.map(|folder| at.join(folder).join("data.csv")));
+    named.into_iter().chain(truths).find(|path| path.is_file() && path != recording)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -213,6 +272,8 @@ mod tests {
             stamp_ns: 1_403_636_580_838_555_648,
             position: [4.688319, -1.786938, 0.783338],
             orientation: [-0.153029, -0.827383, -0.082152, 0.534108],
+            velocity: None,
+            bias: None,
         };
         for text in [
             "1403636580.838555648 4.688319 -1.786938 0.783338 -0.153029 -0.827383 -0.082152 0.534108\n",

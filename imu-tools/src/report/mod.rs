@@ -3,7 +3,7 @@
 //! [`table`] for a terminal, [`json`] for programs, [`yaml`] for Kalibr and [`formats`] for other
 //! filters, [`csv`] for plots of one's own, [`plot`] for pictures, [`html`] for the report, [`demo`]
 //! for the comparison of several with the truth. All write a [`Calibration`](crate::calibrate::Calibration) into text.
-//! [`tradeoff`] shows what accuracy costs.
+//! [`tradeoff`] shows what accuracy costs, [`integration`] where dead reckoning went.
 
 pub mod csv;
 pub mod demo;
@@ -11,6 +11,7 @@ pub mod formats;
 mod harmless;
 pub mod html;
 pub mod info;
+pub mod integration;
 pub mod json;
 pub mod plot;
 pub mod table;

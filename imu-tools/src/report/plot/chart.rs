@@ -46,6 +46,23 @@ impl Key {
     }
 }
 
+/// What colours mean, beside one another from the left, in as many lines as it takes.
+pub(super) fn legend(keys: Vec<Key>, width: f64) -> (Drawn, f64) {
+    const LINE: f64 = 22.0;
+    let mut shapes = Shapes::default();
+    let (mut x, mut y) = (LEFT, LINE);
+    for key in &keys {
+        let wide = 38.0 + LETTER.0 * key.name.chars().count() as f64;
+        if x > LEFT && x + wide > width - RIGHT {
+            (x, y) = (LEFT, y + LINE);
+        }
+        key.draw(&mut shapes, (x, y - 4.0));
+        shapes.words("label", (x + 26.0, y), Anchor::Start, &key.name);
+        x += wide;
+    }
+    (Drawn { shapes, legend: keys }, y + 8.0)
+}
+
 /// A chart that is drawn.
 pub(super) struct Drawn {
     pub(super) shapes: Shapes,
@@ -57,6 +74,18 @@ impl Chart {
     pub(super) fn new(at: Point, size: (f64, f64), x: Scale, y: Scale) -> Self {
         let (inside, marks) = (Shapes::default(), Shapes::default());
         Self { at, size, x, y, inside, marks, named: Vec::new(), legend: Vec::new() }
+    }
+
+    /// A chart in which a unit is as long across as it is up: around these values, the shorter axis made longer.
+    pub(super) fn equal(at: Point, size: (f64, f64), x: Scale, y: Scale) -> Self {
+        let across = (size.0 - LEFT - RIGHT) / (size.1 - ABOVE - BELOW);
+        let ((left, right), (bottom, top)) = (x.ends(), y.ends());
+        let up = (top - bottom).max((right - left) / across);
+        let about = |low: f64, high: f64, length: f64| {
+            let middle = 0.5 * (low + high);
+            Scale::between(middle - 0.5 * length, middle + 0.5 * length)
+        };
+        Self::new(at, size, about(left, right, up * across), about(bottom, top, up))
     }
 
     fn frame(&self) -> (Point, Point) {

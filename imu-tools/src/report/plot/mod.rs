@@ -18,6 +18,7 @@
 
 mod allan;
 mod chart;
+mod integration;
 mod png;
 mod residual;
 mod scale;
@@ -27,6 +28,7 @@ mod tradeoff;
 
 pub use allan::allan;
 pub(super) use allan::lowest;
+pub use integration::{errors, trajectory};
 pub use residual::residual;
 pub use signal::signal;
 pub use tradeoff::tradeoff;
@@ -62,9 +64,14 @@ pub struct Figure {
 impl Figure {
     /// Charts of this height under one another, one for each of `count`.
     fn new(description: String, charts: impl Iterator<Item = Drawn>, each: f64) -> Self {
+        Self::stacked(description, charts.map(|chart| (chart, each)))
+    }
+
+    /// Charts under one another, each with its height.
+    fn stacked(description: String, charts: impl Iterator<Item = (Drawn, f64)>) -> Self {
         let (mut shapes, mut legend) = (Shapes::default(), Vec::new());
         let mut height = 0.0;
-        for chart in charts {
+        for (chart, each) in charts {
             shapes.append(&chart.shapes);
             for key in chart.legend {
                 if !legend.contains(&key) {

@@ -116,6 +116,15 @@ impl Scale {
     }
 }
 
+/// The unit of an axis of time that goes up to `end_s`, and how many of it a second is.
+pub(super) fn time(end_s: f64) -> (&'static str, f64) {
+    match end_s {
+        end if end > 3.0 * 3600.0 => ("h", 1.0 / 3600.0),
+        end if end > 300.0 => ("min", 1.0 / 60.0),
+        _ => ("s", 1.0),
+    }
+}
+
 /// The least and the largest; `None` of none.
 fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.fold(None, |extent, v| {

@@ -1,7 +1,7 @@
 //! The signal over time: its range and mean, and what was left out.
 
 use super::chart::{Chart, Drawn};
-use super::scale::Scale;
+use super::scale::{Scale, time};
 use super::{AXES, Figure, WIDTH};
 use crate::calibrate::{Calibration, Column, SensorNoise};
 
@@ -21,11 +21,7 @@ pub fn signal(calibration: &Calibration) -> Figure {
 fn chart(sensor: &SensorNoise, top: f64) -> Drawn {
     let columns = &sensor.signal;
     let end = columns.iter().map(|column| column.to_s).fold(0.0, f64::max);
-    let (unit, per_second) = match end {
-        end if end > 3.0 * 3600.0 => ("h", 1.0 / 3600.0),
-        end if end > 300.0 => ("min", 1.0 / 60.0),
-        _ => ("s", 1.0),
-    };
+    let (unit, per_second) = time(end);
     let middle = |column: &Column| 0.5 * (column.from_s + column.to_s) * per_second;
     let ends = columns.iter().flat_map(|column| {
         let about = |axis: usize, x: f64| x - sensor.mean[axis];
