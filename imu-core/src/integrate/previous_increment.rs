@@ -12,7 +12,7 @@ use crate::{Real, so3};
 ///
 /// For sensors that gather Δθ and Δv where every increment must be used as it comes, or where one is lost now and
 /// then. Savage (1998), with the increment before in place of the half before. Uneven steps, a before h: c =
-/// h²/(6a(a + h)), Δp = ½hυ − (h³/(6(a + h)))(υ/h − υ₋/a) + (h/6)α×υ. The first step, and one more than three times as
+/// h²/(6a(a + h)), Δp = ½hυ − (h³/(6(a + h)))(υ/h − υ₋/a) + (h/6)α×υ. The first step, and one more than five times as
 /// long as the step before, do without and are of second order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreviousIncrement<T: Real> {
@@ -28,6 +28,13 @@ impl<T: Real> PreviousIncrement<T> {
         let weights =
             Weights { steps: (0, 0), cross: T::ZERO, lever: [T::ZERO; 2], sixth: T::ZERO };
         Self { previous: Increment { angle: zero, velocity: zero }, weights }
+    }
+
+    /// Begins behind an increment that is known: third order from the beginning.
+    #[must_use]
+    pub fn after(previous: &Increment<T>, dt: &Step<T>) -> Self {
+        let weights = Weights::of((0, dt.nanoseconds()), dt.seconds());
+        Self { previous: *previous, weights }
     }
 }
 
@@ -82,7 +89,7 @@ impl<T: Real> Weights<T> {
     fn of(steps: (u32, u32), h: T) -> Self {
         let (half, sixth) = (h * T::from_f64(0.5), h * T::from_f64(1.0 / 6.0));
         let (before, now) = steps;
-        if before == 0 || now / 3 > before {
+        if before == 0 || now / 5 > before {
             return Self { steps, cross: T::ZERO, lever: [T::ZERO, half], sixth };
         }
         // In units of h.

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 ///
 /// Derived as [`ConingSculling`](super::ConingSculling) is (Savage, 1998), with rate and force quadratic in time.
 /// The weights of the three samples follow the lengths of the last two steps, and are worked out when those change.
-/// The first step, and one more than three times as long as the step before (where a parabola would be
+/// The first step, and one more than five times as long as the step before (where a parabola would be
 /// extrapolation), know two samples only and are of second order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThreeSample<T: Real> {
@@ -36,6 +36,13 @@ impl<T: Real> ThreeSample<T> {
             third: T::ZERO,
         };
         Self { earlier: *first, previous: *first, weights }
+    }
+
+    /// Begins at the instant of `first`, a step after a sample that is known, too: third order from the beginning.
+    #[must_use]
+    pub fn after(earlier: &Sample<T>, dt: &Step<T>, first: &Sample<T>) -> Self {
+        let weights = Weights::of((0, dt.nanoseconds()), dt.seconds());
+        Self { earlier: *earlier, previous: *first, weights }
     }
 }
 
@@ -104,7 +111,7 @@ impl<T: Real> Weights<T> {
         let (mut mean, mut lever) =
             ([T::ZERO, half, half], [T::ZERO, square * T::from_f64(1.0 / 3.0), h * sixth]);
         let (before, now) = steps;
-        if before > 0 && now / 3 <= before {
+        if before > 0 && now / 5 <= before {
             // In units of h: 1/a and 1/(a + 1).
             let a = number(before) / number(now);
             let (over, both) = (T::ONE / a, T::ONE / (a + T::ONE));

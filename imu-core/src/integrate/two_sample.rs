@@ -44,8 +44,10 @@ impl<T: Real> Rule<T> for TwoSample {
 }
 
 impl TwoSample {
-    /// Two increments of unequal lengths: third order. ⅔ becomes h²/(6ab), and Δp = ½hυ − (h²/6)(υ₂/b − υ₁/a) +
-    /// (h/6)α×υ, for halves of lengths a and b. None where both are longer than a [`Step`] may be.
+    /// Two increments of unequal lengths, a and b: third order, and the better the more even they are.
+    ///
+    /// ⅔ becomes h²/(6ab), and Δp = ½hυ − (h²/6)(υ₂/b − υ₁/a) + (h/6)(α − (h/2)(α₂/b − α₁/a))×υ + (h/24)α×(α×υ), which
+    /// is the form for halves where they are equal. None where both together are longer than a [`Step`] may be.
     #[must_use]
     pub fn uneven<T: Real>(
         halves: &Halves<T>,
@@ -55,14 +57,15 @@ impl TwoSample {
         let nanoseconds = i64::from(first.nanoseconds()) + i64::from(second.nanoseconds());
         let dt = Step::from_nanoseconds(nanoseconds).ok()?;
         let (a, b, h) = (first.seconds(), second.seconds(), dt.seconds());
-        let sixth = T::from_f64(1.0 / 6.0);
-        let (angle, push) = (
-            halves.first.angle + halves.second.angle,
-            halves.first.velocity + halves.second.velocity,
-        );
-        let slope = halves.second.velocity * (h / b) - halves.first.velocity * (h / a);
-        let position = push * (h * T::from_f64(0.5)) - slope * (h * sixth)
-            + cross(&angle, &push) * (h * sixth);
+        let (half, sixth) = (T::from_f64(0.5), T::from_f64(1.0 / 6.0));
+        let (one, two) = (&halves.first, &halves.second);
+        let (angle, push) = (one.angle + two.angle, one.velocity + two.velocity);
+        // h times the change of the mean force, and of the mean rate.
+        let later_push = two.velocity * (h / b) - one.velocity * (h / a);
+        let later_angle = two.angle * (h / b) - one.angle * (h / a);
+        let position = push * (h * half) - later_push * (h * sixth)
+            + cross(&(angle - later_angle * half), &push) * (h * sixth)
+            + cross(&angle, &cross(&angle, &push)) * (h * T::from_f64(1.0 / 24.0));
         Some(finished(halves, sixth * (h / a) * (h / b), position, &dt))
     }
 }

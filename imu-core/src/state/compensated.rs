@@ -34,13 +34,13 @@
 //! # Ok::<(), imu_core::Error>(())
 //! ```
 
-use super::{State, felt, felt_in_step};
+use super::{State, attitude_gain, felt, felt_in_step};
+use crate::Real;
 use crate::delta::Delta;
 use crate::integrate::Rule;
 use crate::time::Step;
 use crate::world::{Gain, World};
-use crate::{Real, so3};
-use nalgebra::{Quaternion, SVector, Vector3, Vector4};
+use nalgebra::{SVector, Vector3, Vector4};
 
 /// A [`State`] and what its sums have rounded away: twice the memory, and in `f32` errors 30 times smaller and more.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,18 +99,10 @@ impl<T: Real> Compensated<T> {
         add(velocity_w, &mut self.velocity_rest, gain.velocity);
         add(position_w, &mut self.position_rest, gain.position);
 
-        let mut turned = so3::product(q, &so3::less_one(&delta.rotation)).coords;
-        if let Some(turn) = world.turn(delta.seconds) {
-            let after = Quaternion::from(q.coords + turned);
-            turned += so3::product(&so3::less_one(&turn), &after).coords;
-        }
-        // Towards unit length by Newton's step, of the sum of both parts: |q + c|² = |q|² + 2 q·c.
-        let half = T::from_f64(0.5);
+        // |q + c|² = |q|² + 2 q·c, of the attitude and what was rounded off it.
         let (c, rest) = (&q.coords, &self.attitude_rest);
-        let square = c.x * c.x + c.y * c.y + c.z * c.z + c.w * c.w;
         let across = c.x * rest.x + c.y * rest.y + c.z * rest.z + c.w * rest.w;
-        let towards = half * (T::ONE - square) - across;
-        turned += c * towards;
+        let turned = attitude_gain(q, across, delta, world);
         add(&mut q.coords, &mut self.attitude_rest, turned);
     }
 }

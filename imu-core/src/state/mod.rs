@@ -36,7 +36,7 @@ use crate::time::Step;
 use crate::vector::within;
 use crate::world::{Gain, World};
 use crate::{Error, Real, so3};
-use nalgebra::{Quaternion, Vector3};
+use nalgebra::{Quaternion, Vector3, Vector4};
 
 /// Attitude, velocity and position of a body in a world frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,11 +97,13 @@ impl<T: Real> State<T> {
     ///
     /// Exact up to rounding in a [`Flat`](crate::world::Flat) world, however long the delta. On a
     /// [`RotatingEarth`](crate::world::RotatingEarth) a delta should be short enough (seconds) for the Earth to turn by
-    /// little.
+    /// little. The attitude is rounded once: blocks of several steps are meant to come in here.
     #[inline]
     pub fn apply(&mut self, delta: &Delta<T>, world: &impl World<T>) {
         let felt = felt(&self.attitude_wb, delta);
-        self.gain(delta, &felt, world);
+        self.move_by(&felt, delta, world);
+        let gain = attitude_gain(&self.attitude_wb, T::ZERO, delta, world);
+        self.attitude_wb.coords += gain;
     }
 
     /// Integrates one more sample, or increment, by a rule: `dt` is the time since the one before.
@@ -118,19 +120,39 @@ impl<T: Real> State<T> {
     ) {
         let delta = rule.step(input, dt);
         let felt = felt_in_step::<T, R>(&self.attitude_wb, &delta);
-        self.gain(&delta, &felt, world);
-    }
-
-    #[inline(always)]
-    fn gain(&mut self, delta: &Delta<T>, felt: &Gain<T>, world: &impl World<T>) {
-        let gain = world.gain(&self.velocity_w, &self.position_w, felt, delta.seconds);
-        self.velocity_w += gain.velocity;
-        self.position_w += gain.position;
+        self.move_by(&felt, &delta, world);
         let attitude = so3::product(&self.attitude_wb, &delta.rotation);
         let attitude =
             world.turn(delta.seconds).map_or(attitude, |turn| so3::product(&turn, &attitude));
         self.attitude_wb = so3::renormalised(&attitude);
     }
+
+    #[inline(always)]
+    fn move_by(&mut self, felt: &Gain<T>, delta: &Delta<T>, world: &impl World<T>) {
+        let gain = world.gain(&self.velocity_w, &self.position_w, felt, delta.seconds);
+        self.velocity_w += gain.velocity;
+        self.position_w += gain.position;
+    }
+}
+
+/// What a delta adds to the components of an attitude, formed without cancellation, and one step of Newton's towards
+/// unit length. `beyond` is by how much q·(what was rounded off q) exceeds nothing.
+#[inline(always)]
+fn attitude_gain<T: Real>(
+    q: &Quaternion<T>,
+    beyond: T,
+    delta: &Delta<T>,
+    world: &impl World<T>,
+) -> Vector4<T> {
+    let mut gain = so3::product(q, &so3::less_one(&delta.rotation)).coords;
+    if let Some(turn) = world.turn(delta.seconds) {
+        let after = Quaternion::from(q.coords + gain);
+        gain += so3::product(&so3::less_one(&turn), &after).coords;
+    }
+    let c = &q.coords;
+    let square = c.x * c.x + c.y * c.y + c.z * c.z + c.w * c.w;
+    // Along the attitude after the step: along the one before it, turns of more than a right angle would diverge.
+    gain + (c + gain) * (T::from_f64(0.5) * (T::ONE - square) - beyond)
 }
 
 /// What was felt, in the axes of the world.

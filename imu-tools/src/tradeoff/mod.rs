@@ -8,5 +8,6 @@
 pub mod allan;
 mod cost;
 pub mod estimators;
+pub mod rules;
 
 pub use cost::Cost;
