@@ -157,6 +157,15 @@ impl<T: Real> Bias<T> {
     pub fn specific_force(&self) -> Vector3<T> {
         self.specific_force
     }
+
+    /// By how much this bias is larger than another.
+    #[inline]
+    pub(crate) fn less(&self, other: &Self) -> Self {
+        Self {
+            angular_rate: self.angular_rate - other.angular_rate,
+            specific_force: self.specific_force - other.specific_force,
+        }
+    }
 }
 
 impl<T: Real> Default for Bias<T> {

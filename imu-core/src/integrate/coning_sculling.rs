@@ -2,7 +2,7 @@
 
 use super::Rule;
 use crate::delta::Delta;
-use crate::sample::Sample;
+use crate::sample::{Bias, Sample};
 use crate::time::Step;
 use crate::vector::{cross, two_crosses};
 use crate::{Real, so3};
@@ -51,5 +51,10 @@ impl<T: Real> Rule<T> for ConingSculling<T> {
         let velocity = push + sculling;
         self.previous = *sample;
         Delta::of_step(rotation, velocity, velocity * half, dt)
+    }
+
+    #[inline]
+    fn rebias(&mut self, change: &Bias<T>) {
+        self.previous = self.previous.minus(change);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Rule;
 use crate::delta::Delta;
-use crate::sample::Sample;
+use crate::sample::{Bias, Sample};
 use crate::time::Step;
 use crate::{Real, so3};
 
@@ -25,4 +25,7 @@ impl<T: Real> Rule<T> for Euler {
         let velocity = sample.specific_force * dt.seconds();
         Delta::of_step(rotation, velocity, velocity * half, dt)
     }
+
+    #[inline]
+    fn rebias(&mut self, _: &Bias<T>) {}
 }

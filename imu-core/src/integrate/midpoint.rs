@@ -2,7 +2,7 @@
 
 use super::Rule;
 use crate::delta::Delta;
-use crate::sample::Sample;
+use crate::sample::{Bias, Sample};
 use crate::time::Step;
 use crate::{Real, so3};
 
@@ -37,5 +37,10 @@ impl<T: Real> Rule<T> for Midpoint<T> {
         let velocity = (self.previous.specific_force + later_force) * half;
         self.previous = *sample;
         Delta::of_step(rotation, velocity, velocity * half, dt)
+    }
+
+    #[inline]
+    fn rebias(&mut self, change: &Bias<T>) {
+        self.previous = self.previous.minus(change);
     }
 }

@@ -65,6 +65,7 @@ pub use two_sample::{Halves, TwoSample};
 
 use crate::Real;
 use crate::delta::Delta;
+use crate::sample::Bias;
 use crate::time::Step;
 
 /// A way to turn what an IMU says into motion, step by step.
@@ -77,4 +78,8 @@ pub trait Rule<T: Real> {
 
     /// The motion from the input before to this one, which came `dt` later.
     fn step(&mut self, input: &Self::Input, dt: &Step<T>) -> Delta<T>;
+
+    /// Takes a bias larger by `change` out of what it remembers, as if it had been out of every input: for whoever
+    /// subtracts biases from inputs, and has come to know them better.
+    fn rebias(&mut self, change: &Bias<T>);
 }

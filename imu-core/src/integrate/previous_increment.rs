@@ -2,8 +2,8 @@
 
 use super::Rule;
 use crate::delta::Delta;
-use crate::sample::Increment;
-use crate::time::Step;
+use crate::sample::{Bias, Increment};
+use crate::time::{Step, seconds};
 use crate::vector::{cross, two_crosses};
 use crate::{Real, so3};
 
@@ -69,6 +69,16 @@ impl<T: Real> Rule<T> for PreviousIncrement<T> {
             + turned * weights.sixth;
         self.previous = *increment;
         Delta::of_step(rotation, velocity, position, dt)
+    }
+
+    #[inline]
+    fn rebias(&mut self, change: &Bias<T>) {
+        // Before the first increment there is nothing, gathered in no time.
+        let dt = seconds::<T>(self.weights.steps.1.into());
+        self.previous = Increment {
+            angle: self.previous.angle - change.angular_rate * dt,
+            velocity: self.previous.velocity - change.specific_force * dt,
+        };
     }
 }
 

@@ -25,7 +25,7 @@
 
 use super::Rule;
 use crate::delta::Delta;
-use crate::sample::Sample;
+use crate::sample::{Bias, Sample};
 use crate::time::Step;
 use crate::{Real, so3};
 use nalgebra::{Quaternion, Vector3};
@@ -44,6 +44,9 @@ impl<T: Real> Rule<T> for TextbookEuler {
         let velocity = sample.specific_force * dt.seconds();
         Delta::of_step(turn(sample.angular_rate * half), velocity, velocity * half, dt)
     }
+
+    #[inline]
+    fn rebias(&mut self, _: &Bias<T>) {}
 }
 
 /// The midpoint rule with a first-order quaternion.
@@ -73,6 +76,11 @@ impl<T: Real> Rule<T> for TextbookMidpoint<T> {
         let velocity = (self.previous.specific_force + later_force) * half;
         self.previous = *sample;
         Delta::of_step(rotation, velocity, velocity * half, dt)
+    }
+
+    #[inline]
+    fn rebias(&mut self, change: &Bias<T>) {
+        self.previous = self.previous.minus(change);
     }
 }
 

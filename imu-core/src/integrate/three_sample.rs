@@ -2,7 +2,7 @@
 
 use super::Rule;
 use crate::delta::Delta;
-use crate::sample::Sample;
+use crate::sample::{Bias, Sample};
 use crate::time::Step;
 use crate::vector::{cross, two_crosses};
 use crate::{Real, so3};
@@ -80,6 +80,12 @@ impl<T: Real> Rule<T> for ThreeSample<T> {
         self.earlier = self.previous;
         self.previous = *sample;
         Delta::of_step(rotation, velocity, position, dt)
+    }
+
+    #[inline]
+    fn rebias(&mut self, change: &Bias<T>) {
+        self.earlier = self.earlier.minus(change);
+        self.previous = self.previous.minus(change);
     }
 }
 

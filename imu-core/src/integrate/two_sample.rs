@@ -2,7 +2,7 @@
 
 use super::Rule;
 use crate::delta::Delta;
-use crate::sample::Increment;
+use crate::sample::{Bias, Increment};
 use crate::time::Step;
 use crate::vector::{cross, dot, two_crosses};
 use crate::{Real, so3};
@@ -41,6 +41,9 @@ impl<T: Real> Rule<T> for TwoSample {
             + cross(&angle, &cross(&angle, &push)) * (h * T::from_f64(1.0 / 24.0));
         finished(halves, coefficient, position, dt)
     }
+
+    #[inline]
+    fn rebias(&mut self, _: &Bias<T>) {}
 }
 
 impl TwoSample {

@@ -5,7 +5,7 @@ use imu_core::integrate::{
     ConingSculling, Euler, Halves, Midpoint, PreviousIncrement, ThreeSample, TwoSample,
 };
 use imu_core::nalgebra::{Quaternion, Vector3};
-use imu_core::sample::{Increment, Sample};
+use imu_core::sample::{Bias, Increment, Sample};
 use imu_core::time::Step;
 use imu_core::world::{Flat, World};
 use imu_core::{Compensated, Error, Real, State, integrate, so3};
@@ -308,6 +308,9 @@ impl<T: Real> integrate::Rule<T> for Pairs {
         let uneven = (first != second).then(|| TwoSample::uneven(halves, first, second));
         uneven.flatten().unwrap_or_else(|| TwoSample.step(halves, dt))
     }
+
+    /// It remembers nothing.
+    fn rebias(&mut self, _: &Bias<T>) {}
 }
 
 fn pairs<T: Real>(record: &Record) -> Result<Vec<Pair<T>>, Error> {

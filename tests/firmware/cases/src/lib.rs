@@ -16,6 +16,7 @@ pub mod inputs;
 mod integrate;
 mod ladder;
 mod noise;
+mod preintegrate;
 mod scalar;
 mod sensor;
 pub mod single;
@@ -81,6 +82,9 @@ pub const CASES: &[Case] = &[
     Case { name: "integrate f64", run: integrate::case::<f64> },
     Case { name: "integrate steps f32", run: integrate::cost_in_single },
     Case { name: "integrate steps f64", run: integrate::cost_in_double },
+    Case { name: "preintegrate f32", run: preintegrate::case::<f32> },
+    Case { name: "preintegrate f64", run: preintegrate::case::<f64> },
+    Case { name: "preintegrate steps f32", run: preintegrate::cost },
     Case { name: "trajectory f32", run: trajectory::case::<f32> },
     Case { name: "trajectory f64", run: trajectory::case::<f64> },
     Case { name: "Allan f32 1", run: ladder::bits::<f32, 1, 1> },

@@ -1,0 +1,169 @@
+//! `imu_core::preintegrate`: deltas, Jacobians and covariances of several rules over many intervals, what is refused,
+//! and what a step costs.
+
+use crate::Report;
+use crate::inputs::Integers;
+use core::hint::black_box;
+use imu_core::Real;
+use imu_core::delta::Delta;
+use imu_core::integrate::{
+    ConingSculling, Halves, Midpoint, PreviousIncrement, Rule, ThreeSample, TwoSample,
+};
+use imu_core::nalgebra::{Matrix3, Vector3};
+use imu_core::preintegrate::{Biased, Mean, NoiseDensities, WithCovariance, WithJacobian, single};
+use imu_core::sample::{Bias, Increment, Sample};
+use imu_core::time::Step;
+
+/// Intervals of each rule, and steps in each.
+const INTERVALS: u32 = 12;
+const STEPS: u32 = 20;
+
+/// The bits of whatever comes out, interval by interval.
+pub fn case<T: Real>(report: &mut dyn Report) {
+    let Some(first) = sample::<T>(&mut Integers::new(5)) else { return report.flag(false) };
+    run(report, Midpoint::new(&first), sample::<T>);
+    run(report, ConingSculling::new(&first), sample::<T>);
+    run(report, ThreeSample::new(&first), sample::<T>);
+    run(report, TwoSample, halves::<T>);
+    run(report, PreviousIncrement::new(), increment::<T>);
+    for bad in [f64::NAN, f64::INFINITY, -1e-30, 1e7, 0.0] {
+        let fine = densities::<T>();
+        let densities = NoiseDensities { accel_random_walk: T::from_f64(black_box(bad)), ..fine };
+        let new = WithCovariance::new(Midpoint::new(&first), Bias::default(), &densities);
+        report.flag(new.is_ok());
+    }
+}
+
+fn run<T: Real, R: Rule<T, Input: Biased<T>> + Clone>(
+    report: &mut dyn Report,
+    rule: R,
+    mut input: impl FnMut(&mut Integers) -> Option<R::Input>,
+) {
+    let mut integers = Integers::new(31);
+    let mut mean = Mean::new(rule.clone(), Bias::default());
+    let mut linear = WithJacobian::new(rule.clone(), Bias::default());
+    let Ok(mut whole) = WithCovariance::new(rule, Bias::default(), &densities()) else {
+        return report.flag(false);
+    };
+    for interval in 0..INTERVALS {
+        for step in 0..STEPS {
+            // Now and then a step that turns far.
+            let nanoseconds = if step % 16 == 11 { 60_000_000 } else { 1_000_000 };
+            let (Some(input), Ok(dt)) = (input(&mut integers), Step::from_nanoseconds(nanoseconds))
+            else {
+                return report.flag(false);
+            };
+            mean.step(&input, &dt);
+            linear.step(&input, &dt);
+            whole.step(&input, &dt);
+        }
+        let new = bias(&mut integers, 0.1);
+        delta(report, &mean.delta());
+        delta(report, &linear.corrected(&new));
+        report.flag(whole.delta() == mean.delta() && whole.jacobian() == linear.jacobian());
+        let (j, c) = (linear.jacobian(), whole.covariance());
+        for block in [
+            &j.rotation_gyro,
+            &j.velocity_gyro,
+            &j.velocity_accel,
+            &j.position_gyro,
+            &j.position_accel,
+            &c.rotation,
+            &c.rotation_velocity,
+            &c.rotation_position,
+            &c.velocity,
+            &c.velocity_position,
+            &c.position,
+        ] {
+            matrix(report, block);
+        }
+        report.real(whole.gyro_bias_variance());
+        report.real(whole.accel_bias_variance());
+        report.word(interval.into());
+        mean.restart(new);
+        linear.restart(new);
+        whole.restart(new);
+    }
+}
+
+fn delta<T: Real>(report: &mut dyn Report, delta: &Delta<T>) {
+    delta.rotation().coords.iter().for_each(|&x| report.real(x));
+    delta.velocity().iter().chain(&delta.position()).for_each(|&x| report.real(x));
+}
+
+fn matrix<T: Real>(report: &mut dyn Report, matrix: &Matrix3<T>) {
+    matrix.iter().for_each(|&x| report.real(x));
+}
+
+fn densities<T: Real>() -> NoiseDensities<T> {
+    let [gyro_noise_density, accel_noise_density, gyro_random_walk, accel_random_walk] =
+        [2e-3, 2e-2, 1e-5, 1e-4].map(|x| T::from_f64(black_box(x)));
+    NoiseDensities { gyro_noise_density, accel_noise_density, gyro_random_walk, accel_random_walk }
+}
+
+fn vector<T: Real>(integers: &mut Integers, size: f64) -> Vector3<T> {
+    let size = T::from_f64(size);
+    Vector3::from([(); 3].map(|()| integers.unit::<T>() * size))
+}
+
+fn bias<T: Real>(integers: &mut Integers, size: f64) -> Bias<T> {
+    Bias::new(vector(integers, size), vector(integers, size)).unwrap_or_default()
+}
+
+fn sample<T: Real>(integers: &mut Integers) -> Option<Sample<T>> {
+    Sample::new(vector(integers, 20.0), vector(integers, 40.0)).ok()
+}
+
+fn increment<T: Real>(integers: &mut Integers) -> Option<Increment<T>> {
+    Increment::new(vector(integers, 0.02), vector(integers, 0.04)).ok()
+}
+
+fn halves<T: Real>(integers: &mut Integers) -> Option<Halves<T>> {
+    Some(Halves { first: increment(integers)?, second: increment(integers)? })
+}
+
+/// Calls that a count averages.
+const CALLS: u32 = 256;
+
+macro_rules! price {
+    ($report:ident, $sample:ident, $dt:ident, $($what:literal, $new:expr, $step:path;)*) => {$(
+        let mut it = $new;
+        $report.state($what, size_of_val(&it));
+        $report.instructions($what, CALLS, &mut || {
+            for _ in 0..CALLS {
+                $step(black_box(&mut it), black_box(&$sample), &$dt);
+            }
+        });
+    )*};
+}
+
+/// Instructions of one whole step, and bytes of what is kept between steps.
+pub fn cost(report: &mut dyn Report) {
+    let (Some(sample), Ok(dt)) = (
+        sample::<f32>(&mut Integers::new(29)),
+        Step::<f32>::from_nanoseconds(black_box(1_000_000)),
+    ) else {
+        return report.flag(false);
+    };
+    let none = Bias::default();
+    let (midpoint, three) = (Midpoint::new(&sample), ThreeSample::new(&sample));
+    let (Ok(whole), Ok(whole_of_three)) = (
+        WithCovariance::new(midpoint, none, &densities()),
+        WithCovariance::new(three, none, &densities()),
+    ) else {
+        return report.flag(false);
+    };
+    price!(report, sample, dt,
+        "mean", Mean::new(midpoint, none), single::midpoint_mean;
+        "with Jacobian", WithJacobian::new(midpoint, none), single::midpoint_with_jacobian;
+        "with covariance", whole, single::midpoint_with_covariance;
+        "three samples, with covariance", whole_of_three, single::three_sample_with_covariance;
+    );
+    let mut whole = whole;
+    report.instructions("reading Jacobian and covariance", 1, &mut || {
+        black_box((black_box(&mut whole).jacobian(), whole.covariance()));
+    });
+    report.stack("with covariance", &mut || {
+        single::midpoint_with_covariance(black_box(&mut whole), black_box(&sample), &dt);
+    });
+}
