@@ -76,6 +76,6 @@ pub(crate) fn matrix<T: Real>(m: &Rows<T>) -> Matrix3<T> {
 
 /// m v
 pub(crate) fn times<T: Real>(m: &Matrix3<T>, v: &Vector3<T>) -> Vector3<T> {
-    let row = |i: usize| m[(i, 0)] * v.x + m[(i, 1)] * v.y + m[(i, 2)] * v.z;
-    Vector3::new(row(0), row(1), row(2))
+    let row = |x: T, y: T, z: T| x * v.x + y * v.y + z * v.z;
+    Vector3::new(row(m.m11, m.m12, m.m13), row(m.m21, m.m22, m.m23), row(m.m31, m.m32, m.m33))
 }

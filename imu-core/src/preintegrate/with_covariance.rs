@@ -22,7 +22,7 @@ use crate::matrix::{Rows, add_scaled, matrix, rotation, skew, transposed_times, 
 use crate::sample::Bias;
 use crate::time::Step;
 use crate::{Error, Real};
-use nalgebra::Vector3;
+use nalgebra::{Quaternion, Vector3};
 
 /// The [`Delta`] since the interval began, with its [`BiasJacobian`] and its [`Covariance`].
 ///
@@ -116,30 +116,7 @@ where
     #[must_use]
     pub fn covariance(&self) -> Covariance<T> {
         let mean = &self.linear.mean;
-        let (v, p) = (&mean.velocity, &mean.position);
-        let Gained { turn: s, turn_velocity: a, turn_position: b, .. } = &self.gained;
-        let s = *s;
-        let axes = rotation(&mean.rotation);
-        let turned = |arm: &Vector3<T>| matrix(&transposed_times(&axes, &skew(arm)));
-        // cov(x − [y]φ, z − [w]φ), where cov(φ, x) = −[x_turn]× and cov(φ, z) = −[z_turn]×.
-        let about = |x_z: &Rows<T>, y, x_turn, w, z_turn| {
-            let sum = add_scaled(x_z, T::ONE, &two_skews(x_turn, w));
-            let sum = add_scaled(&sum, T::ONE, &two_skews(y, z_turn));
-            matrix(&add_scaled(&sum, -s, &two_skews(y, w)))
-        };
-        let zero = T::ZERO;
-        Covariance {
-            rotation: matrix(&[
-                Vector3::new(s, zero, zero),
-                Vector3::new(zero, s, zero),
-                Vector3::new(zero, zero, s),
-            ]),
-            rotation_velocity: turned(&(v * s - a)),
-            rotation_position: turned(&(p * s - b)),
-            velocity: about(&self.gained.velocity.rows(), v, a, v, a),
-            velocity_position: about(&self.gained.velocity_position, v, a, p, b),
-            position: about(&self.gained.position.rows(), p, b, p, b),
-        }
+        self.gained.covariance(&mean.rotation, &mean.velocity, &mean.position)
     }
 
     /// By how much the gyroscope's bias has wandered since the interval began: variance of each axis, K_g² t,
@@ -182,6 +159,32 @@ impl<T: Real> Gained<T> {
             velocity: nothing,
             velocity_position: [zero; 3],
             position: nothing,
+        }
+    }
+
+    /// Of (δθ, δv, δp) where the mean is this. Apart from the rule: compiled once for all of them.
+    fn covariance(&self, q: &Quaternion<T>, v: &Vector3<T>, p: &Vector3<T>) -> Covariance<T> {
+        let Self { turn: s, turn_velocity: a, turn_position: b, .. } = self;
+        let (s, axes) = (*s, rotation(q));
+        let turned = |arm: &Vector3<T>| matrix(&transposed_times(&axes, &skew(arm)));
+        // cov(x − [y]φ, z − [w]φ), where cov(φ, x) = −[x_turn]× and cov(φ, z) = −[z_turn]×.
+        let about = |x_z: &Rows<T>, y, x_turn, w, z_turn| {
+            let sum = add_scaled(x_z, T::ONE, &two_skews(x_turn, w));
+            let sum = add_scaled(&sum, T::ONE, &two_skews(y, z_turn));
+            matrix(&add_scaled(&sum, -s, &two_skews(y, w)))
+        };
+        let zero = T::ZERO;
+        Covariance {
+            rotation: matrix(&[
+                Vector3::new(s, zero, zero),
+                Vector3::new(zero, s, zero),
+                Vector3::new(zero, zero, s),
+            ]),
+            rotation_velocity: turned(&(v * s - a)),
+            rotation_position: turned(&(p * s - b)),
+            velocity: about(&self.velocity.rows(), v, a, v, a),
+            velocity_position: about(&self.velocity_position, v, a, p, b),
+            position: about(&self.position.rows(), p, b, p, b),
         }
     }
 }

@@ -68,17 +68,7 @@ where
     /// How the motion changes with the biases: (δθ, δv, δp) of (φ, ν, π), which is worth keeping.
     #[must_use]
     pub fn jacobian(&self) -> BiasJacobian<T> {
-        let Gained { axes, turn, velocity_gyro, position_gyro, velocity_accel, position_accel } =
-            &self.gained;
-        let negative = |m: &Rows<T>| matrix(&m.map(|row| -row));
-        let by_turn = |m: &Rows<T>, arm| add_scaled(m, -T::ONE, &crossed(arm, turn));
-        BiasJacobian {
-            rotation_gyro: negative(&transposed_times(axes, turn)),
-            velocity_gyro: negative(&by_turn(velocity_gyro, &self.mean.velocity)),
-            velocity_accel: negative(velocity_accel),
-            position_gyro: negative(&by_turn(position_gyro, &self.mean.position)),
-            position_accel: negative(position_accel),
-        }
+        self.gained.jacobian(&self.mean.velocity, &self.mean.position)
     }
 
     /// The motion if the bias is this one, to first order: [`BiasJacobian::corrected`].
@@ -97,7 +87,8 @@ where
         let jacobian = turn::times_left_jacobian(&gained.axes, &moved);
         let turned = jacobian.map(|row| row * h);
         let after = rotation(&self.mean.rotation);
-        let pushed = [0, 1, 2].map(|i: usize| (gained.axes[i] + after[i]) * half);
+        let sum = add_scaled(&gained.axes, T::ONE, &after);
+        let pushed = sum.map(|row| row * half);
         // The position before the velocity: it wants the old one.
         gained.position_gyro = add_scaled(&gained.position_gyro, h, &gained.velocity_gyro);
         add(&mut gained.position_gyro, &crossed(&arms.position, &turned));
@@ -156,6 +147,21 @@ impl<T: Real> Gained<T> {
             position_gyro: zero,
             velocity_accel: zero,
             position_accel: zero,
+        }
+    }
+
+    /// Of (δθ, δv, δp) at this velocity and position. Apart from the rule: compiled once for all of them.
+    fn jacobian(&self, velocity: &Vector3<T>, position: &Vector3<T>) -> BiasJacobian<T> {
+        let Gained { axes, turn, velocity_gyro, position_gyro, velocity_accel, position_accel } =
+            self;
+        let negative = |m: &Rows<T>| matrix(&m.map(|row| -row));
+        let by_turn = |m: &Rows<T>, arm| add_scaled(m, -T::ONE, &crossed(arm, turn));
+        BiasJacobian {
+            rotation_gyro: negative(&transposed_times(axes, turn)),
+            velocity_gyro: negative(&by_turn(velocity_gyro, velocity)),
+            velocity_accel: negative(velocity_accel),
+            position_gyro: negative(&by_turn(position_gyro, position)),
+            position_accel: negative(position_accel),
         }
     }
 }

@@ -6,11 +6,11 @@ use crate::inputs::Integers;
 use core::hint::black_box;
 use imu_core::Real;
 use imu_core::delta::Delta;
-use imu_core::integrate::{
-    ConingSculling, Halves, Midpoint, PreviousIncrement, Rule, ThreeSample, TwoSample,
+use imu_core::integrate::{Halves, Midpoint, PreviousIncrement, Rule, ThreeSample, TwoSample};
+use imu_core::nalgebra::Vector3;
+use imu_core::preintegrate::{
+    BiasJacobian, Biased, Covariance, Mean, NoiseDensities, WithCovariance, WithJacobian, single,
 };
-use imu_core::nalgebra::{Matrix3, Vector3};
-use imu_core::preintegrate::{Biased, Mean, NoiseDensities, WithCovariance, WithJacobian, single};
 use imu_core::sample::{Bias, Increment, Sample};
 use imu_core::time::Step;
 
@@ -21,11 +21,10 @@ const STEPS: u32 = 20;
 /// The bits of whatever comes out, interval by interval.
 pub fn case<T: Real>(report: &mut dyn Report) {
     let Some(first) = sample::<T>(&mut Integers::new(5)) else { return report.flag(false) };
-    run(report, Midpoint::new(&first), sample::<T>);
-    run(report, ConingSculling::new(&first), sample::<T>);
+    compare(report, &first);
     run(report, ThreeSample::new(&first), sample::<T>);
-    run(report, TwoSample, halves::<T>);
     run(report, PreviousIncrement::new(), increment::<T>);
+    pairs::<T>(report);
     for bad in [f64::NAN, f64::INFINITY, -1e-30, 1e7, 0.0] {
         let fine = densities::<T>();
         let densities = NoiseDensities { accel_random_walk: T::from_f64(black_box(bad)), ..fine };
@@ -34,65 +33,104 @@ pub fn case<T: Real>(report: &mut dyn Report) {
     }
 }
 
-fn run<T: Real, R: Rule<T, Input: Biased<T>> + Clone>(
-    report: &mut dyn Report,
-    rule: R,
-    mut input: impl FnMut(&mut Integers) -> Option<R::Input>,
-) {
-    let mut integers = Integers::new(31);
-    let mut mean = Mean::new(rule.clone(), Bias::default());
-    let mut linear = WithJacobian::new(rule.clone(), Bias::default());
+/// All three of the same samples.
+fn compare<T: Real>(report: &mut dyn Report, first: &Sample<T>) {
+    let (mut integers, rule) = (Integers::new(37), Midpoint::new(first));
+    let mut mean = Mean::new(rule, Bias::default());
+    let mut linear = WithJacobian::new(rule, Bias::default());
     let Ok(mut whole) = WithCovariance::new(rule, Bias::default(), &densities()) else {
         return report.flag(false);
     };
     for interval in 0..INTERVALS {
         for step in 0..STEPS {
-            // Now and then a step that turns far.
-            let nanoseconds = if step % 16 == 11 { 60_000_000 } else { 1_000_000 };
-            let (Some(input), Ok(dt)) = (input(&mut integers), Step::from_nanoseconds(nanoseconds))
-            else {
+            let (Some(input), Some(dt)) = (sample(&mut integers), length(step)) else {
                 return report.flag(false);
             };
             mean.step(&input, &dt);
             linear.step(&input, &dt);
             whole.step(&input, &dt);
         }
+        report.word(interval.into());
         let new = bias(&mut integers, 0.1);
-        delta(report, &mean.delta());
         delta(report, &linear.corrected(&new));
         report.flag(whole.delta() == mean.delta() && whole.jacobian() == linear.jacobian());
-        let (j, c) = (linear.jacobian(), whole.covariance());
-        for block in [
-            &j.rotation_gyro,
-            &j.velocity_gyro,
-            &j.velocity_accel,
-            &j.position_gyro,
-            &j.position_accel,
-            &c.rotation,
-            &c.rotation_velocity,
-            &c.rotation_position,
-            &c.velocity,
-            &c.velocity_position,
-            &c.position,
-        ] {
-            matrix(report, block);
-        }
+        all(report, &whole.delta(), &whole.jacobian(), &whole.covariance());
         report.real(whole.gyro_bias_variance());
         report.real(whole.accel_bias_variance());
-        report.word(interval.into());
         mean.restart(new);
         linear.restart(new);
         whole.restart(new);
     }
 }
 
+fn run<T: Real, R: Rule<T, Input: Biased<T>>>(
+    report: &mut dyn Report,
+    rule: R,
+    mut input: impl FnMut(&mut Integers) -> Option<R::Input>,
+) {
+    let mut integers = Integers::new(31);
+    let Ok(mut whole) = WithCovariance::new(rule, Bias::default(), &densities()) else {
+        return report.flag(false);
+    };
+    for _ in 0..INTERVALS {
+        for step in 0..STEPS {
+            let (Some(input), Some(dt)) = (input(&mut integers), length(step)) else {
+                return report.flag(false);
+            };
+            whole.step(&input, &dt);
+        }
+        all(report, &whole.delta(), &whole.jacobian(), &whole.covariance());
+        whole.restart(bias(&mut integers, 0.1));
+    }
+}
+
+/// Biases of pairs of increments.
+fn pairs<T: Real>(report: &mut dyn Report) {
+    let mut integers = Integers::new(41);
+    let mut mean = Mean::new(TwoSample, bias::<T>(&mut integers, 0.1));
+    for step in 0..STEPS {
+        let (Some(input), Some(dt)) = (halves(&mut integers), length(step)) else {
+            return report.flag(false);
+        };
+        mean.step(&input, &dt);
+        delta(report, &mean.delta());
+    }
+}
+
+/// Now and then a step that turns far.
+fn length<T: Real>(step: u32) -> Option<Step<T>> {
+    Step::from_nanoseconds(if step % 16 == 11 { 60_000_000 } else { 1_000_000 }).ok()
+}
+
+#[inline(never)]
+fn all<T: Real>(
+    report: &mut dyn Report,
+    moved: &Delta<T>,
+    jacobian: &BiasJacobian<T>,
+    covariance: &Covariance<T>,
+) {
+    delta(report, moved);
+    for block in [
+        &jacobian.rotation_gyro,
+        &jacobian.velocity_gyro,
+        &jacobian.velocity_accel,
+        &jacobian.position_gyro,
+        &jacobian.position_accel,
+        &covariance.rotation,
+        &covariance.rotation_velocity,
+        &covariance.rotation_position,
+        &covariance.velocity,
+        &covariance.velocity_position,
+        &covariance.position,
+    ] {
+        block.iter().for_each(|&x| report.real(x));
+    }
+}
+
+#[inline(never)]
 fn delta<T: Real>(report: &mut dyn Report, delta: &Delta<T>) {
     delta.rotation().coords.iter().for_each(|&x| report.real(x));
     delta.velocity().iter().chain(&delta.position()).for_each(|&x| report.real(x));
-}
-
-fn matrix<T: Real>(report: &mut dyn Report, matrix: &Matrix3<T>) {
-    matrix.iter().for_each(|&x| report.real(x));
 }
 
 fn densities<T: Real>() -> NoiseDensities<T> {
