@@ -118,7 +118,7 @@ fn root(path: &str) -> String {
 fn example_scenes_run() {
     let folder = tempfile::tempdir().expect("temporary folder");
     let [csv, truth, terms] = ["a.csv", "truth.csv", "terms.csv"].map(|name| at(&folder, name));
-    for scene in ["everything", "phone", "drone"] {
+    for scene in ["everything", "phone", "drone", "ellipse"] {
         let scene = root(&format!("examples/scenes/{scene}.toml"));
         let asked = ["simulate", &scene, "--duration", "3s", "-o", &csv];
         let beside = ["--truth", &truth, "--truth-terms", &terms];

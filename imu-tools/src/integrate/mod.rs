@@ -236,13 +236,6 @@ pub fn integrate(
     run.pairs.end();
     run.rows()?;
     run.check()?;
-    if options.kind == Kind::Instantaneous && source.gyroscope().contains("mean") {
-        run.warnings.push(format!(
-            "{path} calls its columns means ({}), and --samples instantaneous was said: half a sample of delay \
-             costs more than any rule saves",
-            source.gyroscope()
-        ));
-    }
     for note in source.take_notes() {
         match note {
             Note::Info(text) => run.remarks.push(text),
@@ -284,6 +277,8 @@ struct Run<'a> {
     bridged: u64,
     /// Sum of the lengths of all specific forces, m/s².
     felt: f64,
+    /// Length of the mean specific force at rest, m/s².
+    force_at_rest: Option<f64>,
     remarks: Vec<String>,
     warnings: Vec<String>,
 }
@@ -337,6 +332,7 @@ impl<'a> Run<'a> {
             too_early: 0,
             bridged: 0,
             felt: 0.0,
+            force_at_rest: None,
             remarks: Vec::new(),
             warnings: Vec::new(),
         })
@@ -425,6 +421,7 @@ impl<'a> Run<'a> {
         let heading = begin.map_or(0.0, |begin| rest::heading(&begin.motion.attitude_wb));
         let attitude_wb = rest::level(&force, heading);
         let measured = (motion::length(&force), GravityFrom::Rest);
+        self.force_at_rest = Some(measured.0);
         let gravity = self.options.gravity.map_or(measured, |g| (g, GravityFrom::Given));
         let bias = if self.options.bias.is_some() {
             told
@@ -442,14 +439,15 @@ impl<'a> Run<'a> {
     }
 
     fn not_at_rest(&self, rows: &[Row], why: &str) -> Error {
-        let span = rows.last().zip(rows.first()).map_or(0, |(b, a)| b.stamp_ns - a.stamp_ns);
+        let ends = rows.last().zip(rows.first());
+        let span = ends.map_or(0, |(last, first)| last.stamp_ns.saturating_sub(first.stamp_ns));
         let mend = if self.truth.is_some() {
             "start from the truth (--start truth), or from a time at which it rests (--from)"
         } else {
-            "name a truth to start from (--truth FILE), or a time at which it rests (--from)"
+            "name a truth to start from (--truth FILE), or start from a time at which it rests (--from)"
         };
         Error::data(format!(
-            "the first {:.3} s of {} are not at rest ({why}), and there is no other state to start from: {mend}",
+            "the first {:.3} s of {} are not at rest ({why}): {mend}",
             span as f64 * 1e-9,
             self.path
         ))
@@ -574,9 +572,12 @@ impl<'a> Run<'a> {
 
     /// That something was integrated.
     fn check(&mut self) -> Result<(), Error> {
-        if let Phase::Resting(rows, _) = &self.phase {
-            let why = format!("it ends before {} s are over", self.options.rest_s);
-            return Err(self.not_at_rest(rows, &why));
+        if let Phase::Resting(..) = &self.phase {
+            return Err(Error::data(format!(
+                "{} ends before the {} s at rest are over that a start takes: ask for less with --rest, or name a \
+                 truth to start from (--truth FILE)",
+                self.path, self.options.rest_s
+            )));
         }
         if self.steps > 0 {
             return Ok(());

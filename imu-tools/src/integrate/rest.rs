@@ -49,7 +49,7 @@ impl Rest {
                 let (range, allowed) = scatter(&values, still);
                 if range > allowed {
                     return Err(format!(
-                        "the {name} about {letter} goes by {range:.3} {unit}, and noise explains {allowed:.3}"
+                        "the {name} {letter} changes by {range:.3} {unit}, of which noise explains {allowed:.3}"
                     ));
                 }
             }
@@ -117,7 +117,7 @@ mod tests {
         let rest = Rest::of(&rows(|_| Vector3::new(0.0, 1.0, 9.75))).unwrap();
         assert!((rest.rate - Vector3::new(0.02, 0.0, 0.01)).abs().max() < 1e-12);
         let moving = Rest::of(&rows(|t| Vector3::new(0.0, t, 9.8))).unwrap_err();
-        assert!(moving.contains("specific force about y goes by 0.9"), "{moving}");
+        assert!(moving.contains("specific force y changes by 0.9"), "{moving}");
         let grams = Rest::of(&rows(|_| Vector3::new(0.0, 0.0, 1.0))).unwrap_err();
         assert!(grams.contains("--accel-unit g"), "{grams}");
         assert!(Rest::of(&rows(|_| Vector3::z())[..5]).unwrap_err().contains("5 samples"));

@@ -41,10 +41,18 @@ pub(super) fn nothing(run: &Run<'_>) -> String {
         let span = run.truth.as_ref().and_then(|truth| truth.span_ns()).zip(run.first_ns);
         let apart = span.map_or(String::new(), |((first, last), start)| {
             let s = |ns: i64| ns.saturating_sub(start) as f64 * 1e-9;
-            format!(", but lasts from {:.3} to {:.3} s after its first sample", s(first), s(last))
+            match (s(first), s(last)) {
+                (first, _) if first > 0.0 => {
+                    format!(": it begins {first:.3} s after its first sample")
+                }
+                (_, last) if last < 0.0 => {
+                    format!(": it ends {:.3} s before its first sample", -last)
+                }
+                _ => ": its poses are more than 0.5 s apart there".into(),
+            }
         });
         return format!(
-            "the truth {} knows no state at any sample of {path}{apart}: are their clocks the same?",
+            "the truth {} knows no state at any sample of {path}{apart}; are their clocks the same?",
             run.truth_name.as_deref().unwrap_or_default()
         );
     }
@@ -137,12 +145,15 @@ impl Run<'_> {
             self.warnings
                 .push("the truth has no biases, or they are zero: none is taken off".into());
         }
-        if begun.from == Start::Rest && begun.gravity_from == GravityFrom::Rest {
+        if let Some(force) = self.force_at_rest {
             let heading = rest::heading(&begun.motion.attitude_wb).to_degrees();
             let from = if self.truth.is_some() { "the truth's" } else { "unknown, taken as" };
+            let length = match begun.gravity_from {
+                GravityFrom::Rest => "whose length is taken for gravity".into(),
+                _ => format!("whose length is {force:.4} m/s²"),
+            };
             self.remarks.push(format!(
-                "at rest for {} s: level by the mean specific force, whose length is taken for gravity; heading \
-                 {from} {heading:.1}°",
+                "at rest for {} s: level by the mean specific force, {length}; heading {from} {heading:.1}°",
                 self.options.rest_s
             ));
         }

@@ -40,7 +40,7 @@ pub struct Truth {
     /// How many of these were handed on.
     handed: usize,
     last_ns: Option<i64>,
-    /// Stamps of the first and the last pose, ns.
+    /// Stamps of the first pose and of the last one that was read, ns.
     span_ns: Option<(i64, i64)>,
     /// Poses that were not after the one before, or not numbers.
     pub(super) left_out: u64,
@@ -127,7 +127,7 @@ impl Truth {
             else {
                 return Ok(None);
             };
-            let span = later.stamp_ns - earlier.stamp_ns;
+            let span = later.stamp_ns.saturating_sub(earlier.stamp_ns);
             if span > HOLE_NS {
                 return Ok(None);
             }
@@ -139,15 +139,18 @@ impl Truth {
             begin.motion.velocity_w = self.velocity(stamp_ns);
             begin.differenced = true;
         }
-        Ok(Some(begin))
+        Ok(Some(begin).filter(|begin| begin.motion.velocity_w.is_some()))
     }
 
     /// The slope of the parabola that fits the positions near an instant best; of a line through the poses on both
     /// sides where there are too few.
     fn velocity(&self, stamp_ns: i64) -> Option<Vector3<f64>> {
-        let seconds = |known: &Known| (known.stamp_ns - stamp_ns) as f64 * 1e-9;
-        let near: Vec<&Known> =
-            self.at_hand.iter().filter(|k| (k.stamp_ns - stamp_ns).abs() <= NEAR_NS).collect();
+        let seconds = |known: &Known| known.stamp_ns.saturating_sub(stamp_ns) as f64 * 1e-9;
+        let near: Vec<&Known> = self
+            .at_hand
+            .iter()
+            .filter(|k| k.stamp_ns.abs_diff(stamp_ns) <= NEAR_NS.unsigned_abs())
+            .collect();
         let first = near.first().or(self.at_hand.front().as_ref())?.motion.position_w;
         if near.len() >= 4 {
             // Normal equations of c₀ + c₁τ + c₂τ² in units of the span; Cramer's rule for c₁.

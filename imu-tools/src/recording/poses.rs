@@ -290,6 +290,26 @@ mod tests {
     }
 
     #[test]
+    fn what_a_table_of_truth_has_besides() {
+        let euroc = "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], \
+             v_RS_R_x [m s^-1], v_RS_R_y [m s^-1], v_RS_R_z [m s^-1], b_w_RS_S_x [rad s^-1], b_w_RS_S_y [rad s^-1], \
+             b_w_RS_S_z [rad s^-1], b_a_RS_S_x [m s^-2], b_a_RS_S_y [m s^-2], b_a_RS_S_z [m s^-2]\n\
+             7,1,2,3,1,0,0,0,4,5,6,.1,.2,.3,.4,.5,.6\n";
+        let [pose] = poses(euroc).unwrap()[..] else { panic!() };
+        assert_eq!((pose.stamp_ns, pose.velocity), (7, Some([4.0, 5.0, 6.0])));
+        assert_eq!(pose.bias, Some(([0.1, 0.2, 0.3], [0.4, 0.5, 0.6])));
+        // What `imu simulate` writes where the clock errs and samples are lost; it is a table of an IMU as well.
+        let own = "t_ns,stamp_ns,p_x_m,p_y_m,p_z_m,q_w,q_x,q_y,q_z,v_x_m_s,v_y_m_s,v_z_m_s,rate_x_rad_s,rate_y_rad_s,\
+             rate_z_rad_s,force_x_m_s2,force_y_m_s2,force_z_m_s2,gyro_bias_x_rad_s,gyro_bias_y_rad_s,gyro_bias_z_rad_s,\
+             accel_bias_x_m_s2,accel_bias_y_m_s2,accel_bias_z_m_s2\n\
+             7,8,1,2,3,1,0,0,0,4,5,6,0,0,0,0,0,9.8,.1,.2,.3,.4,.5,.6\n\
+             9,,1,2,3,1,0,0,0,4,5,6,0,0,0,0,0,9.8,.1,.2,.3,.4,.5,.6\n";
+        assert_eq!(poses(own).unwrap(), [Pose { stamp_ns: 8, ..pose }]);
+        let stream = Box::new(std::io::Cursor::new(own.as_bytes().to_vec()));
+        assert!(!Poses::are_in(&mut Input::pipe(Path::new("a"), stream)).unwrap());
+    }
+
+    #[test]
     fn imu_tables_are_no_poses() {
         for text in [
             "0.1 0 0 0 0 0 9.81 25\n",
