@@ -113,7 +113,10 @@ fn json_has_the_documented_shape() {
         for name in ["gyroscope", "accelerometer"] {
             let sensor = &calibration[name];
             has(sensor, &["topic", "samples", "rate_hz", "gaps", "duplicates", "backward"]);
-            has(sensor, &["non_finite", "tau_used_s", "axes", "pooled", "deviation"]);
+            has(
+                sensor,
+                &["non_finite", "tau_used_s", "axes", "pooled", "for_filters", "deviation"],
+            );
             assert_eq!(sensor["tau_used_s"].as_array().map(Vec::len), Some(2));
             let axes = sensor["axes"].as_array().expect("axes");
             assert_eq!(axes.iter().map(|a| &a["axis"]).collect::<Vec<_>>(), ["x", "y", "z"]);
@@ -122,7 +125,7 @@ fn json_has_the_documented_shape() {
                     let mut expected = if parameter["observable"] == true {
                         vec!["observable", "value", "sd", "low90", "high90", "unit"]
                     } else {
-                        vec!["observable", "upper90", "record_at_least_s", "unit"]
+                        vec!["observable", "upper90", "may_show_from_s", "unit"]
                     };
                     expected.sort_unstable();
                     let mut there = keys(parameter);
@@ -233,7 +236,7 @@ fn a_random_walk_that_does_not_show_is_a_bound_and_a_warning() {
         let bound = ends.fold(0.0, f64::max);
         let value: f64 = value.parse().expect("a number");
         assert!(value > 0.0 && (value / bound - 1.0).abs() < 1e-6);
-        assert!(comment.contains("NOT OBSERVABLE") && comment.contains("upper 90 % bound"));
+        assert!(comment.contains("NOT KNOWN WELL") && comment.contains("the largest upper end"));
         let warned = |text: &str| text.contains(sensor) && text.contains("too short");
         assert!(said.err.lines().any(|line| line.starts_with("imu: warning: ") && warned(line)));
         let warnings = calibration["recording"]["warnings"].as_array().expect("warnings");

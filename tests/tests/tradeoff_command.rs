@@ -56,3 +56,55 @@ fn what_cannot_be_simulated_is_refused() {
         assert!(said.err.contains(words) && said.err.lines().count() == 1, "{}", said.err);
     }
 }
+
+const FEW: [&str; 8] =
+    ["tradeoff", "rules", "--rates", "200,100", "--noisy-rates", "100", "--records", "2"];
+
+#[test]
+fn rules_are_compared() {
+    let folder = Folder::new();
+    let output = folder.path().to_str().unwrap();
+    let said = run(&[&FEW[..], &["--json", "-o", output]].concat());
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    let value: Value = serde_json::from_str(&said.out).expect("one JSON object");
+    // Rates in order; five motions, two rates, four kinds of numbers, six rules.
+    assert_eq!(value["rates_hz"], serde_json::json!([100, 200]));
+    let clean = value["clean"].as_array().unwrap();
+    assert_eq!(clean.len(), 5 * 2 * 4 * 6);
+    let of = |rate: u64, rule: &str| {
+        let row = clean.iter().find(|row| {
+            (&row["motion"], &row["rule"], &row["numbers"])
+                == (&"ellipse".into(), &rule.into(), &"f64".into())
+                && row["rate_hz"] == rate
+        });
+        row.unwrap()["largest"]["attitude_deg"].as_f64().unwrap()
+    };
+    // The published order of each: 1, 2, 3.
+    for (rule, order) in [("Euler", 1.0), ("midpoint", 2.0), ("three samples", 3.0)] {
+        let measured = (of(100, rule) / of(200, rule)).log2();
+        assert!((measured - order).abs() < 0.15, "{rule}: {measured}");
+    }
+    let page = std::fs::read_to_string(folder.at("tradeoff.md")).unwrap();
+    assert!(page.contains("--rates 100,200 --noisy-rates 100 --records 2"), "{page}");
+    let picture = std::fs::read_to_string(folder.at("tradeoff-rules.svg")).unwrap();
+    assert!(picture.starts_with("<svg") && picture.contains("three samples"));
+    // The same errors again, whatever the prices are.
+    let again = run(&[&FEW[..], &["--json"]].concat());
+    let again: Value = serde_json::from_str(&again.out).expect("one JSON object");
+    assert_eq!(value["noisy"], again["noisy"]);
+}
+
+#[test]
+fn rates_that_make_no_sense_are_refused() {
+    for (arguments, words) in [
+        (&["--rates", "0"][..], "from 1 to 32000"),
+        (&["--rates", "fast"], "fast"),
+        (&["--noisy-rates", "64000"], "from 1 to 32000"),
+        (&["--records", "0"], "0"),
+        (&["-o", "-"], "no pipe"),
+    ] {
+        let said = run(&[&["tradeoff", "rules"], arguments].concat());
+        assert_eq!((said.code, said.out.as_str()), (2, ""), "{}", said.err);
+        assert!(said.err.contains(words) && said.err.lines().count() == 1, "{}", said.err);
+    }
+}

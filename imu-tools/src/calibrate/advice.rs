@@ -2,7 +2,7 @@
 
 use imu_core::allan::{Octave, Parameter};
 
-use super::filter::{Factors, walk_for_filter};
+use super::filter::{Basis, Factors, FilterValue, walk_for_filter};
 use super::verdict::NextRecord;
 use super::{AxisNoise, Deviation, SensorNoise, Stretch};
 use crate::recording::Summary;
@@ -141,8 +141,8 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
         let longest = sensor.deviation.get(contradiction.octave).map_or(0.0, |d| d.tau_s);
         let sigmas = contradiction.sigmas;
         let decide = format!(
-            "averaging times up to {longest:.3} s are not used for the fit: they contradict the longer ones \
-             by {sigmas:.0} standard deviations"
+            "averaging times up to {longest:.3} s are not used for the fit: they contradict the longer ones, \
+             the longest that does by {sigmas:.0} standard deviations; the two after it are left out too"
         );
         to.push(match motion(sensor, contradiction.octave) {
             Some((times, tau_s)) => format!(
@@ -163,8 +163,9 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
         let unit = sensor.kind.walk_unit();
         let walk = walk_for_filter(&sensor.pooled).unwrap_or_default();
         to.push(format!(
-            "there is flicker (bias instability B): K stands beside it, and is known less well than alone; \
-             files for filters hold {walk:.2e} {unit}, which goes as far in {:.0} s as both",
+            "there is flicker (bias instability B), and beside it K is known less well than alone; filters know \
+             no B, so their files hold {walk:.2e} {unit} for K, with which the bias goes as far in {:.0} s as by \
+             B and K together",
             Factors::OVER_S
         ));
     }
@@ -177,14 +178,25 @@ fn of_noise(to: &mut Vec<String>, sensor: &SensorNoise) {
     if let Parameter::NotObservable { upper90, .. } = sensor.pooled.random_walk
         && upper90.is_finite()
     {
-        let next = match NextRecord::of(sensor) {
-            NextRecord::AtLeast(wanted_s) => format!("; record at least {}", seconds(wanted_s)),
-            _ => String::new(),
-        };
         to.push(format!(
-            "the record is too short to show the random walk of the bias on all axes{next}"
+            "the record is too short to show the random walk of the bias{}",
+            longer(sensor)
+        ));
+    } else if let Some(FilterValue { value, basis: Basis::UpperBound }) =
+        FilterValue::random_walk(sensor)
+    {
+        let unit = sensor.kind.walk_unit();
+        to.push(format!(
+            "K is not known well: files for filters hold {value:.2e} {unit}, a bound that covers all axes{}",
+            longer(sensor)
         ));
     }
+}
+
+/// What length would make K known well enough, where it is length that is wanting.
+fn longer(sensor: &SensorNoise) -> String {
+    NextRecord::enough_s(sensor)
+        .map_or_else(String::new, |enough_s| format!("; record at least {}", seconds(enough_s)))
 }
 
 /// The terms that were fitted, in words.
@@ -273,10 +285,14 @@ fn of_values(to: &mut Vec<String>, sensor: &SensorNoise) {
 fn of_stamps(to: &mut Vec<String>, stamps: &Summary) {
     let Summary { samples, gap_count, missing, duplicates, backward, restarts, .. } = *stamps;
     if gap_count > 0 {
-        let longest = stamps.gaps.iter().max_by_key(|gap| gap.missing);
-        let longest = longest.filter(|_| stamps.rate_hz > 0.0).map_or_else(String::new, |gap| {
+        let longest = stamps.longest_gap.filter(|_| stamps.rate_hz > 0.0);
+        let longest = longest.map_or_else(String::new, |gap| {
             let length = gap.missing as f64 / stamps.rate_hz;
-            format!(", the longest of {length:.3} s, {} after the start", seconds(gap.at_s))
+            let at = seconds(gap.at_s);
+            format!(
+                ", the longest of {} samples ({length:.3} s), {at} after the start",
+                gap.missing
+            )
         });
         to.push(format!("samples missing: {missing}, gaps: {gap_count}{longest}"));
     }

@@ -201,6 +201,35 @@ impl NextRecord {
             wanted => Self::AtLeast(round_up(wanted)),
         }
     }
+
+    /// How long to record, s, so that all axes together show K to [`Known::ENOUGH`], which is good enough for a filter;
+    /// `None` where they do, or where it is not length that is wanting.
+    ///
+    /// An interval narrows as the root of the length. Where K does not show yet, its bound stands for it, in the limit of
+    /// three axes: sd(ln K) = √(2N/(3KT)).
+    #[must_use]
+    pub fn enough_s(sensor: &SensorNoise) -> Option<f64> {
+        let (walk, density) = (sensor.pooled.random_walk, sensor.pooled.noise_density);
+        if sensor.pooled.bias_instability.is_some() || sensor.misfit.contains(&true) {
+            return None;
+        }
+        let wanted_s = match (Known::of(walk), walk, density) {
+            (known, ..) if known.is_enough() => return None,
+            (Known::Roughly(half), ..) => sensor.stamps.span_s * (half / Known::ENOUGH).powi(2),
+            (
+                _,
+                Parameter::NotObservable { upper90, record_at_least_s },
+                Parameter::Observable { value: n, .. },
+            ) => {
+                let deviation = Known::ENOUGH / 1.645;
+                (2.0 * n / (3.0 * upper90 * deviation * deviation))
+                    .max(record_at_least_s)
+                    .max(2.0 * sensor.stamps.span_s)
+            }
+            _ => return None,
+        };
+        (wanted_s.is_finite() && wanted_s > 0.0).then(|| round_up(wanted_s))
+    }
 }
 
 /// Up to a length that a person would set, s: 5 min, half hours from one hour on, hours from ten on.

@@ -10,6 +10,7 @@ use crate::output::Output;
 use crate::report;
 use crate::scene::parse_duration;
 use crate::tradeoff::allan::{Plan, measure};
+use crate::tradeoff::rules;
 
 /// Measure what accuracy costs, on this machine.
 #[derive(Args, Debug)]
@@ -21,6 +22,7 @@ pub(super) struct Tradeoff {
 #[derive(Debug, Subcommand)]
 enum What {
     Allan(Allan),
+    Rules(Rules),
 }
 
 /// Estimators of N and K: their errors, over many simulated records, beside their price.
@@ -54,10 +56,45 @@ struct Allan {
     output: Option<PathBuf>,
 }
 
+/// Integration rules: their errors on five motions, at any rate, in f64 and f32, beside their price.
+///
+/// Example: imu tradeoff rules -o docs
+#[derive(Args, Debug)]
+struct Rules {
+    /// Samples a second of clean data, rising
+    #[arg(long, value_name = "HZ,…", value_delimiter = ',', default_values_t = rules::Plan::default().rates)]
+    rates: Vec<u32>,
+
+    /// Samples a second of data with white noise, rising
+    #[arg(long, value_name = "HZ,…", value_delimiter = ',', default_values_t = rules::Plan::default().noisy_rates)]
+    noisy_rates: Vec<u32>,
+
+    /// Leave noise out
+    #[arg(long, conflicts_with = "noisy_rates")]
+    no_noise: bool,
+
+    /// Noisy records, of each motion and rate
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    records: u64,
+
+    /// Seed of the first record
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+
+    /// Write tradeoff.md, with a plot, into a folder; other sections of the page stay as they are
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+}
+
 impl Tradeoff {
     pub(super) fn run(self) -> Result<(), Error> {
         match self.what {
             What::Allan(allan) => allan.run(),
+            What::Rules(rules) => rules.run(),
         }
     }
 }
@@ -71,17 +108,52 @@ impl Allan {
             seed: self.seed,
         };
         plan.check()?;
-        let files = self.output.as_deref().map(Files::create).transpose()?;
+        let files = Files::create(self.output.as_deref(), "tradeoff-allan.svg")?;
         let bar = progress::records(2 * plan.records, "simulating");
         let tradeoff = measure(&plan, |done| bar.set_position(done))?;
         bar.finish_and_clear();
         if let Some(files) = files {
-            files.write(&tradeoff)?;
+            let page = |before: Option<&str>, picture: &str| {
+                report::tradeoff::allan::page(before, &tradeoff, picture)
+            };
+            files.write(page, &report::plot::tradeoff(&tradeoff))?;
         }
         if self.json {
-            super::print(&format!("{:#}\n", report::tradeoff::json(&tradeoff)))
+            super::print(&format!("{:#}\n", report::tradeoff::allan::json(&tradeoff)))
         } else {
-            super::print(&report::tradeoff::table(&tradeoff))
+            super::print(&report::tradeoff::allan::table(&tradeoff))
+        }
+    }
+}
+
+impl Rules {
+    fn run(self) -> Result<(), Error> {
+        let sorted = |mut rates: Vec<u32>| {
+            rates.sort_unstable();
+            rates.dedup();
+            rates
+        };
+        let plan = rules::Plan {
+            rates: sorted(self.rates),
+            noisy_rates: if self.no_noise { Vec::new() } else { sorted(self.noisy_rates) },
+            records: self.records,
+            seed: self.seed,
+        };
+        plan.check()?;
+        let files = Files::create(self.output.as_deref(), "tradeoff-rules.svg")?;
+        let bar = progress::records(plan.steps(), "following motions");
+        let tradeoff = rules::measure(&plan, |done| bar.set_position(done))?;
+        bar.finish_and_clear();
+        if let Some(files) = files {
+            let page = |before: Option<&str>, picture: &str| {
+                report::tradeoff::rules::page(before, &tradeoff, picture)
+            };
+            files.write(page, &report::plot::rules(&tradeoff))?;
+        }
+        if self.json {
+            super::print(&format!("{:#}\n", report::tradeoff::rules::json(&tradeoff)))
+        } else {
+            super::print(&report::tradeoff::rules::table(&tradeoff))
         }
     }
 }
@@ -90,13 +162,14 @@ impl Allan {
 struct Files {
     before: Option<String>,
     page: Output,
+    name: &'static str,
     picture: Output,
 }
 
 impl Files {
-    const PICTURE: &str = "tradeoff-allan.svg";
-
-    fn create(folder: &Path) -> Result<Self, Error> {
+    /// None where no folder is asked for; the picture is called by its `name`.
+    fn create(folder: Option<&Path>, name: &'static str) -> Result<Option<Self>, Error> {
+        let Some(folder) = folder else { return Ok(None) };
         if folder == Path::new("-") {
             return Err(Error::usage(
                 "-o names a folder, in which a page and its plot are written, and no pipe"
@@ -110,15 +183,18 @@ impl Files {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
             Err(error) => return Err(Error::io("read", &page, error)),
         };
-        let picture = Output::create(&folder.join(Self::PICTURE))?;
-        Ok(Self { before, page: Output::create(&page)?, picture })
+        let picture = Output::create(&folder.join(name))?;
+        Ok(Some(Self { before, page: Output::create(&page)?, name, picture }))
     }
 
-    fn write(self, tradeoff: &crate::tradeoff::allan::Tradeoff) -> Result<(), Error> {
-        let Self { before, mut page, mut picture } = self;
-        let text = report::tradeoff::page(before.as_deref(), tradeoff, Self::PICTURE);
-        picture.write(report::plot::tradeoff(tradeoff).svg().as_bytes())?;
-        page.write(text.as_bytes())?;
+    fn write(
+        self,
+        text: impl FnOnce(Option<&str>, &str) -> String,
+        figure: &report::plot::Figure,
+    ) -> Result<(), Error> {
+        let Self { before, mut page, name, mut picture } = self;
+        picture.write(figure.svg().as_bytes())?;
+        page.write(text(before.as_deref(), name).as_bytes())?;
         picture.finish()?;
         page.finish()
     }

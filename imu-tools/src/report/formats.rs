@@ -68,7 +68,9 @@ fn noise(sensor: &SensorNoise) -> [Option<Remarked>; 2] {
             Basis::Estimate => "",
             Basis::Reading => "; a reading without an interval",
             Basis::CoversFlicker => "; covers the bias instability too",
-            Basis::UpperBound => "; NOT KNOWN WELL: an upper 90 % bound of all axes",
+            Basis::UpperBound => {
+                "; NOT KNOWN WELL: the largest upper end of x, y, z and all axes together"
+            }
         };
         Some((value, remark))
     })

@@ -1,13 +1,14 @@
 //! The result for programs, one JSON object.
 //!
 //! A parameter is `{"observable":true,"value","sd","low90","high90","unit"}`, or where the record
-//! cannot show it `{"observable":false,"upper90","record_at_least_s","unit"}`; a sensor that the
+//! cannot show it `{"observable":false,"upper90","may_show_from_s","unit"}`; a sensor that the
 //! recording does not have, a term that it did not ask for, and a number that is not known, are `null`.
 
 use imu_core::allan::Parameter;
 use serde_json::{Value, json};
 
 use super::Quantity;
+use crate::calibrate::filter::FilterValue;
 use crate::calibrate::{AxisNoise, Calibration, SensorKind, SensorNoise};
 use crate::recording::ClockStep;
 
@@ -94,6 +95,10 @@ fn sensor(sensor: &SensorNoise) -> Value {
         "tau_used_s": sensor.tau_used_s.map(|(first, last)| [first, last]),
         "axes": axes,
         "pooled": noise(&sensor.pooled, sensor.kind),
+        "for_filters": {
+            "noise_density": FilterValue::noise_density(sensor).map(|found| found.value),
+            "random_walk": FilterValue::random_walk(sensor).map(|found| found.value),
+        },
         "deviation": deviation,
     })
 }
@@ -122,7 +127,7 @@ fn parameter(parameter: Parameter, quantity: Quantity) -> Value {
         }),
         // An infinite bound becomes null.
         Parameter::NotObservable { upper90, record_at_least_s } => json!({
-            "observable": false, "upper90": upper90, "record_at_least_s": record_at_least_s,
+            "observable": false, "upper90": upper90, "may_show_from_s": record_at_least_s,
             "unit": unit,
         }),
     }

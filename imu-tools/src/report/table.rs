@@ -6,7 +6,7 @@ use imu_core::allan::Parameter;
 
 use super::Quantity;
 use super::json::AXES;
-use crate::calibrate::verdict::{NextRecord, interval};
+use crate::calibrate::verdict::{Known, NextRecord, interval};
 use crate::calibrate::{AxisNoise, Calibration, SensorNoise};
 use crate::scene::display_duration;
 
@@ -42,6 +42,11 @@ fn sensor(text: &mut String, sensor: &SensorNoise) {
     }
     for (quantity, of) in Quantity::fitted(sensor) {
         block(text, sensor, quantity, of);
+    }
+    if let Some(enough_s) = NextRecord::enough_s(sensor) {
+        let within = 100.0 * Known::ENOUGH;
+        let enough = duration(enough_s);
+        let _ = writeln!(text, "  for K of all axes to ±{within:.0} % record at least {enough}");
     }
     if let NextRecord::AtLeast(wanted_s) = NextRecord::of(sensor) {
         let _ = writeln!(

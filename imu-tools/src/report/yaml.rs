@@ -17,7 +17,7 @@ use crate::calibrate::{Calibration, SensorKind, SensorNoise};
 pub fn kalibr(calibration: &Calibration) -> String {
     let mut text = format!(
         "# IMU noise for Kalibr, estimated from {} ({:.0} s).\n\
-         # Continuous-time densities; x, y and z pooled. Intervals are of 90 % confidence.\n\
+         # Continuous-time densities; x, y and z together. Intervals are of 90 % confidence.\n\
          # As measured, not multiplied: for a filter in motion make them larger.\n",
         harmless(&calibration.path, ""),
         calibration.span_s
@@ -89,17 +89,12 @@ fn lines(text: &mut String, kind: SensorKind, sensor: &SensorNoise) {
                 Factors::OVER_S
             ),
             Basis::UpperBound => {
-                let next = match NextRecord::of(sensor) {
-                    NextRecord::AtLeast(wanted_s) => {
-                        format!("; record at least {}", duration(wanted_s))
-                    }
-                    _ => String::new(),
-                };
-                let why = match parameter {
-                    Parameter::NotObservable { .. } => "NOT OBSERVABLE",
-                    Parameter::Observable { .. } => "NOT KNOWN WELL",
-                };
-                format!("; {why} in this record: an upper 90 % bound of all axes{next}")
+                let next = NextRecord::enough_s(sensor).map_or_else(String::new, |enough_s| {
+                    format!("; record at least {}", duration(enough_s))
+                });
+                format!(
+                    "; NOT KNOWN WELL: the largest upper end of x, y, z and all axes together{next}"
+                )
             }
         };
         let _ = writeln!(text, "{name}_{key}: {value:.6e}  # {unit}{remark}");
@@ -134,7 +129,7 @@ fn known(quantity: Quantity, parameter: Parameter) -> String {
             format!("{value:.3e} {unit}{}", between(quantity, parameter))
         }
         Parameter::NotObservable { upper90, .. } if upper90.is_finite() => {
-            format!("not observable, all axes together below {upper90:.3e} {unit}")
+            format!("all axes together do not show it, and are below {upper90:.3e} {unit}")
         }
         Parameter::NotObservable { .. } => "nothing is known of it".into(),
     }

@@ -77,6 +77,8 @@ pub struct Summary {
     pub span_s: f64,
     /// The first gaps, at most [`Summary::GAPS_LISTED`].
     pub gaps: Vec<Gap>,
+    /// The longest gap, the first of equal ones, listed or not.
+    pub longest_gap: Option<Gap>,
     /// All gaps, listed or not.
     pub gap_count: u64,
     /// Samples missing in all gaps.
@@ -293,9 +295,12 @@ impl Timeline {
         to(Event::Missing(count));
         self.summary.gap_count += 1;
         self.summary.missing += count;
+        let gap = Gap { at_s: (self.nanoseconds + elapsed) * 1e-9, missing: count };
+        if self.summary.longest_gap.is_none_or(|longest| longest.missing < count) {
+            self.summary.longest_gap = Some(gap);
+        }
         if self.summary.gaps.len() < Summary::GAPS_LISTED {
-            let at_s = (self.nanoseconds + elapsed) * 1e-9;
-            self.summary.gaps.push(Gap { at_s, missing: count });
+            self.summary.gaps.push(gap);
         }
     }
 

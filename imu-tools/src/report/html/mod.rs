@@ -226,7 +226,7 @@ fn filters(calibration: &Calibration, sensors: &[&SensorNoise]) -> Markup {
                         th { "advice: multiply by" }
                         th { "upper end of its interval" }
                         th { "noisiest axis" }
-                        th { "seen beside it" }
+                        th { "vibration, drift" }
                     }
                 }
                 tbody {
@@ -318,8 +318,8 @@ mod tests {
         let sensor = calibration.gyroscope.as_mut().unwrap();
         let bound = Parameter::NotObservable { upper90: 1e-3, record_at_least_s: 300.0 };
         sensor.pooled.random_walk = bound;
-        let NextRecord::AtLeast(wanted_s) = NextRecord::of(sensor) else { panic!("too short") };
-        let advice = format!("record at least {}", span(wanted_s));
+        let enough_s = NextRecord::enough_s(sensor).expect("it is too short");
+        let advice = format!("record at least {}", span(enough_s));
         let page = page(&calibration);
         assert!(page.matches(&advice).count() >= 2, "{advice}: {page}");
     }

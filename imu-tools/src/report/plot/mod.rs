@@ -31,7 +31,7 @@ pub(super) use allan::lowest;
 pub use integration::{errors, trajectory};
 pub use residual::residual;
 pub use signal::signal;
-pub use tradeoff::tradeoff;
+pub use tradeoff::{rules, tradeoff};
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD as STANDARD;

@@ -1,11 +1,14 @@
-//! Error of K over price, one chart for each noise.
+//! Error over price: of estimators of K, one chart for each noise; of integration rules, one for each motion.
 
 use super::chart::Chart;
 use super::scale::Scale;
 use super::{Figure, WIDTH};
-use crate::report::tradeoff::name;
+use crate::report::tradeoff::allan::name;
 use crate::tradeoff::allan::{NOISES, Tradeoff};
 use crate::tradeoff::estimators::Method;
+use crate::tradeoff::rules::follow::{Carrier, RULES};
+use crate::tradeoff::rules::motion::Motion;
+use crate::tradeoff::rules::{self, Way};
 
 const HEIGHT: f64 = 400.0;
 
@@ -43,6 +46,55 @@ pub fn tradeoff(tradeoff: &Tradeoff) -> Figure {
             &format!("rms error of K where N/K = {period:.0} s"),
             "price in all, ns a value",
             "rms error of K, %",
+        )
+    });
+    Figure::new(description.into(), charts, HEIGHT)
+}
+
+/// Classes of the rules, in their order.
+const LINES: [&str; RULES.len()] =
+    ["line rule0", "line rule1", "line rule2", "line rule3", "line rule4", "line rule5"];
+
+/// Error of attitude over price in `f64`, a line for each rule and a dot for each rate; and the cheapest way to each
+/// accuracy by name.
+#[must_use]
+pub fn rules(tradeoff: &rules::Tradeoff) -> Figure {
+    let description = "Largest error of attitude over price, of all rules at all rates, by motion";
+    let motions = [Motion::Ellipse, Motion::Gait, Motion::Coning, Motion::Spin];
+    let charts = motions.into_iter().enumerate().map(|(k, motion)| {
+        let ways = RULES.map(|rule| {
+            let of = |run: &&rules::Clean| {
+                (run.motion, run.rule, run.carrier) == (motion, rule, Carrier::F64)
+            };
+            let runs = tradeoff.clean.iter().filter(of);
+            runs.filter_map(|run| tradeoff.way(run)).collect::<Vec<Way>>()
+        });
+        let point = |way: &Way| (way.ns_per_second / 1e3, way.run.errors.attitude_deg.max(1e-13));
+        let points = || ways.iter().flatten().map(point);
+        let mut chart = Chart::new(
+            (0.0, k as f64 * HEIGHT),
+            (WIDTH, HEIGHT),
+            Scale::decades(points().flat_map(|(price, _)| [price, 1.3 * price])),
+            Scale::decades(points().map(|(_, error)| error)),
+        );
+        for ((ways, class), rule) in ways.iter().zip(LINES).zip(RULES) {
+            let line: Vec<_> = ways.iter().map(point).collect();
+            chart.line(class, &line);
+            chart.dots("mark", &line);
+            chart.name(class, rule.name());
+        }
+        for wanted in [1.0, 1e-2, 1e-4, 1e-6, 1e-8] {
+            let cheapest = tradeoff.cheapest(motion, wanted);
+            if let Some(way) = cheapest.filter(|way| way.run.carrier == Carrier::F64) {
+                let name = format!("{wanted}°: {}, {} Hz", way.run.rule.name(), way.run.rate);
+                chart.mark("mark", point(&way), true, &name);
+            }
+        }
+        chart.finish(
+            &format!("rules-{k}"),
+            motion.name(),
+            "price, µs of computing for each second of motion",
+            "largest error of attitude, °",
         )
     });
     Figure::new(description.into(), charts, HEIGHT)

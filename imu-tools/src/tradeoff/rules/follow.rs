@@ -53,6 +53,12 @@ impl Rule {
         }
     }
 
+    /// Samples, or increments, that a step takes.
+    #[must_use]
+    pub fn inputs_per_step(self) -> f64 {
+        if self == Self::TwoSample { 2.0 } else { 1.0 }
+    }
+
     /// Whether it takes increments, and not samples.
     #[must_use]
     pub fn takes_increments(self) -> bool {

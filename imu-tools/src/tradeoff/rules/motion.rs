@@ -271,6 +271,6 @@ mod tests {
             assert!(norm(velocity - first[1] - second[1]) < 1e-12);
         }
         assert_eq!(Motion::Rest.gathered(0.0, 2.0)[0], Vector3::zeros());
-        assert!((Motion::Rest.gathered(0.0, 2.0)[1].z - 2.0 * GRAVITY).abs() < 1e-12);
+        assert!((Motion::Rest.gathered(0.0, 2.0)[1].z - 2.0 * GRAVITY).abs() < 1e-11);
     }
 }

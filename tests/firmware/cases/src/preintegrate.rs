@@ -6,10 +6,10 @@ use crate::inputs::Integers;
 use core::hint::black_box;
 use imu_core::Real;
 use imu_core::delta::Delta;
-use imu_core::integrate::{Halves, Midpoint, PreviousIncrement, Rule, ThreeSample, TwoSample};
+use imu_core::integrate::{Halves, Midpoint, PreviousIncrement, ThreeSample, TwoSample};
 use imu_core::nalgebra::Vector3;
 use imu_core::preintegrate::{
-    BiasJacobian, Biased, Covariance, Mean, NoiseDensities, WithCovariance, WithJacobian, single,
+    BiasJacobian, Covariance, Mean, NoiseDensities, WithCovariance, WithJacobian, double, single,
 };
 use imu_core::sample::{Bias, Increment, Sample};
 use imu_core::time::Step;
@@ -18,70 +18,70 @@ use imu_core::time::Step;
 const INTERVALS: u32 = 12;
 const STEPS: u32 = 20;
 
-/// The bits of whatever comes out, interval by interval.
-pub fn case<T: Real>(report: &mut dyn Report) {
-    let Some(first) = sample::<T>(&mut Integers::new(5)) else { return report.flag(false) };
-    compare(report, &first);
-    run(report, ThreeSample::new(&first), sample::<T>);
-    run(report, PreviousIncrement::new(), increment::<T>);
-    pairs::<T>(report);
-    for bad in [f64::NAN, f64::INFINITY, -1e-30, 1e7, 0.0] {
-        let fine = densities::<T>();
-        let densities = NoiseDensities { accel_random_walk: T::from_f64(black_box(bad)), ..fine };
-        let new = WithCovariance::new(Midpoint::new(&first), Bias::default(), &densities);
-        report.flag(new.is_ok());
-    }
-}
-
-/// All three of the same samples.
-fn compare<T: Real>(report: &mut dyn Report, first: &Sample<T>) {
-    let (mut integers, rule) = (Integers::new(37), Midpoint::new(first));
-    let mut mean = Mean::new(rule, Bias::default());
-    let mut linear = WithJacobian::new(rule, Bias::default());
-    let Ok(mut whole) = WithCovariance::new(rule, Bias::default(), &densities()) else {
-        return report.flag(false);
-    };
-    for interval in 0..INTERVALS {
-        for step in 0..STEPS {
-            let (Some(input), Some(dt)) = (sample(&mut integers), length(step)) else {
-                return report.flag(false);
-            };
-            mean.step(&input, &dt);
-            linear.step(&input, &dt);
-            whole.step(&input, &dt);
+/// All three of the same samples by the midpoint rule: the bits of whatever comes out, interval by interval. The steps
+/// are the concrete ones, each compiled once: in double precision on a device that has none it is a large thing.
+macro_rules! bits {
+    ($report:ident, $T:ty, $step:ident) => {
+        let Some(first) = sample::<$T>(&mut Integers::new(5)) else { return $report.flag(false) };
+        let (mut integers, rule) = (Integers::new(37), Midpoint::new(&first));
+        let mut mean = Mean::new(rule, Bias::default());
+        let mut linear = WithJacobian::new(rule, Bias::default());
+        let Ok(mut whole) = WithCovariance::new(rule, Bias::default(), &densities()) else {
+            return $report.flag(false);
+        };
+        for interval in 0..INTERVALS {
+            for step in 0..STEPS {
+                let (Some(input), Some(dt)) = (sample(&mut integers), length(step)) else {
+                    return $report.flag(false);
+                };
+                $step::midpoint_mean(&mut mean, &input, &dt);
+                $step::midpoint_with_jacobian(&mut linear, &input, &dt);
+                $step::midpoint_with_covariance(&mut whole, &input, &dt);
+            }
+            $report.word(interval.into());
+            let new = bias(&mut integers, 0.1);
+            delta($report, &linear.corrected(&new));
+            $report.flag(whole.delta() == mean.delta() && whole.jacobian() == linear.jacobian());
+            all($report, &whole.delta(), &whole.jacobian(), &whole.covariance());
+            $report.real(whole.gyro_bias_variance());
+            $report.real(whole.accel_bias_variance());
+            mean.restart(new);
+            linear.restart(new);
+            whole.restart(new);
         }
-        report.word(interval.into());
-        let new = bias(&mut integers, 0.1);
-        delta(report, &linear.corrected(&new));
-        report.flag(whole.delta() == mean.delta() && whole.jacobian() == linear.jacobian());
-        all(report, &whole.delta(), &whole.jacobian(), &whole.covariance());
-        report.real(whole.gyro_bias_variance());
-        report.real(whole.accel_bias_variance());
-        mean.restart(new);
-        linear.restart(new);
-        whole.restart(new);
-    }
+        increments::<$T>($report);
+        pairs::<$T>($report);
+        for bad in [f64::NAN, f64::INFINITY, -1e-30, 1e7, 0.0] {
+            let bad = <$T>::from_f64(black_box(bad));
+            let densities = NoiseDensities { accel_random_walk: bad, ..densities() };
+            $report.flag(WithCovariance::new(rule, Bias::default(), &densities).is_ok());
+        }
+    };
 }
 
-fn run<T: Real, R: Rule<T, Input: Biased<T>>>(
-    report: &mut dyn Report,
-    rule: R,
-    mut input: impl FnMut(&mut Integers) -> Option<R::Input>,
-) {
+/// In single precision.
+pub fn case_in_single(report: &mut dyn Report) {
+    bits!(report, f32, single);
+}
+
+/// In double precision.
+pub fn case_in_double(report: &mut dyn Report) {
+    bits!(report, f64, double);
+}
+
+/// Biases of increments.
+fn increments<T: Real>(report: &mut dyn Report) {
     let mut integers = Integers::new(31);
-    let Ok(mut whole) = WithCovariance::new(rule, Bias::default(), &densities()) else {
-        return report.flag(false);
-    };
-    for _ in 0..INTERVALS {
-        for step in 0..STEPS {
-            let (Some(input), Some(dt)) = (input(&mut integers), length(step)) else {
-                return report.flag(false);
-            };
-            whole.step(&input, &dt);
-        }
-        all(report, &whole.delta(), &whole.jacobian(), &whole.covariance());
-        whole.restart(bias(&mut integers, 0.1));
+    let mut mean = Mean::new(PreviousIncrement::new(), bias::<T>(&mut integers, 0.1));
+    for step in 0..STEPS {
+        let (Some(input), Some(dt)) = (increment(&mut integers), length(step)) else {
+            return report.flag(false);
+        };
+        mean.step(&input, &dt);
+        delta(report, &mean.delta());
     }
+    mean.restart(bias(&mut integers, 0.1));
+    delta(report, &mean.delta());
 }
 
 /// Biases of pairs of increments.

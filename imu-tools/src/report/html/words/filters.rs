@@ -8,9 +8,10 @@ use crate::calibrate::filter::{Basis, Factors, FilterValue, walk_for_filter};
 use crate::report::Quantity;
 
 pub(in super::super) const HERE: &str = "The blocks below are not multiplied by anything. The last three columns say what this recording itself asks \
-     for: how much larger the true value may be, how much noisier the noisiest axis is, and what else was seen.";
+     for: how much larger the true value may be, how much noisier the noisiest axis is, and vibration or drift that was \
+     seen.";
 
-pub(in super::super) const ADVICE: &str = " It is twice the largest of the three. The 2 stands for what no recording at rest can know: vibration, a bias \
+pub(in super::super) const ADVICE: &str = " It is twice the largest of the three, of a bound too: the 2 stands for what no recording at rest can know: vibration, a bias \
      that follows temperature, errors of scale and alignment, time stamps that are off. For a cheap sensor on a \
      drone, a car or an engine take 5 to 10 in its place. Too large costs a filter a little accuracy; too small, \
      it trusts errors and may diverge. If yours shows its innovations (measured minus predicted), raise the \
@@ -106,10 +107,11 @@ fn found_in(sensor: &SensorNoise, warned: bool) -> Vec<String> {
     }
     if let Some(walk) = walk_for_filter(&sensor.pooled) {
         found.push(format!(
-            "flicker (bias instability B), which these filters have no term for: their K is {} {}, which \
-             covers both",
+            "flicker (bias instability B), which these filters have no term for: their K is {} {}, with which \
+             the bias goes as far in {:.0} s as by both",
             short(walk),
-            Quantity::RandomWalk(sensor.kind).unit()
+            Quantity::RandomWalk(sensor.kind).unit(),
+            Factors::OVER_S
         ));
     }
     if let Some(warm_up_s) = sensor.warm_up_s {

@@ -2,7 +2,7 @@
 
 use super::{list, percent, span};
 use crate::calibrate::SensorNoise;
-use crate::calibrate::verdict::{Known, NextRecord};
+use crate::calibrate::verdict::NextRecord;
 
 /// What to do better.
 pub(in super::super) fn next_time(sensors: &[&SensorNoise]) -> Vec<String> {
@@ -39,14 +39,18 @@ fn length(sensor: &SensorNoise) -> Option<String> {
     match NextRecord::of(sensor) {
         NextRecord::AtLeast(wanted_s) => {
             let wanted = span(wanted_s);
-            let again = if Known::of(sensor.pooled.random_walk).is_enough() {
-                ""
-            } else {
-                ". Then look here again: K is known too roughly to say more"
-            };
-            Some(format!(
-                "{name}: for K of each axis to {within} record at least {wanted}; this was {this}{again}."
-            ))
+            Some(match NextRecord::enough_s(sensor) {
+                Some(enough_s) => format!(
+                    "{name}: record at least {}, for a K of all axes together that is good enough (this was {this}). Then \
+                     look here again: K is known too roughly to say more. For K of each axis to {within} it would be \
+                     {wanted} or longer.",
+                    span(enough_s)
+                ),
+                None => format!(
+                    "{name}: this was {this}, and enough for a filter. For K of each axis to {within} record at least \
+                     {wanted}."
+                ),
+            })
         }
         NextRecord::LongEnough if sensor.misfit.contains(&true) => Some(format!(
             "{name}: a longer record alone does not help; find what else is in it (temperature, motion)."

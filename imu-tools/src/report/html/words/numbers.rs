@@ -51,8 +51,8 @@ pub(in super::super) fn meaning(
     };
     let walk = |text: String| match walk_for_filter(&sensor.pooled) {
         Some(walk) => format!(
-            "{text} This is K beside B: the part of the wandering that grows as the root of time. With B it \
-             goes as far in {:.0} s as a walk of {} {} by itself.",
+            "{text} That is K alone, without the flicker B. With both the bias goes as far in {:.0} s as with a K of {} {} \
+             by itself.",
             Factors::OVER_S,
             short(walk),
             quantity.unit()
@@ -124,7 +124,7 @@ pub(in super::super) fn row_of_all(
         .fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
     let mixed = showing > 0 && (showing < axes().count() || !shows(&all));
     (mixed || value(all) > most || value(all) < least).then_some(
-        "Each axis is as its own row says. The row “all” is one fit to the three curves, not their mean, and may lie \
+        "The row “all” is one fit to the three curves, not their mean, and may lie \
          outside of the three rows.",
     )
 }
@@ -136,7 +136,7 @@ pub(in super::super) fn lowest_point(sensor: &SensorNoise) -> String {
         "The lowest point of the Allan curve, which most datasheets print as bias instability";
     let Some((tau, deviation)) = lowest(sensor) else {
         return format!(
-            "{WHAT}, was not reached: at the longest averaging time used the curve still falls."
+            "{WHAT}, was not reached: at the longest averaging time used the fit of all axes still falls."
         );
     };
     let found = match sensor.pooled.bias_instability {

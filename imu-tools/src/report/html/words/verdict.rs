@@ -22,10 +22,10 @@ pub(in super::super) fn overall(sensors: &[&SensorNoise]) -> String {
     let (names, limit) = (list(&names), percent(Known::ENOUGH));
     match worst {
         Enough::Yes => format!(
-            "Yes. What a filter needs of the {names} is known to {limit} or better, which is good enough."
+            "Yes. What a filter needs of the {names} is known to {limit} or better of all axes together, which is good enough."
         ),
         Enough::BoundOfWalk => format!(
-            "Yes for N, no for K of the {names}. Good enough is {limit} or better. The blocks for your filter \
+            "Yes for N, no for K of the {names}. Good enough is {limit} or better of all axes together. The blocks for your filter \
              hold a safe upper bound of K in its place; a longer recording gives a smaller one."
         ),
         Enough::NotKnown => format!(
@@ -73,8 +73,8 @@ fn walk(sensor: &SensorNoise) -> String {
         }
         (Basis::Estimate, _) => "The walk of the bias is known.".into(),
         (Basis::CoversFlicker, _) => format!(
-            "Its bias shows flicker (B), which hides the walk K. Filters are given {value} {unit}, a walk that \
-             covers both."
+            "Its bias shows flicker (B), which hides the walk K. Filters are given {value} {unit} for K, with which \
+             the bias goes as far in 100 s as by both."
         ),
         (Basis::UpperBound, _) => {
             let seen = if sensor.misfit.contains(&true) {

@@ -1,16 +1,14 @@
-//! What accuracy costs, as a table on a terminal, as JSON, and as a section of a page.
-
-use std::fmt::Write as _;
+//! Estimators of N and K: errors beside prices.
 
 use serde_json::{Value, json};
 
+use super::{Table, markdown, terminal, with_section};
 use crate::scene::display_duration;
 use crate::tradeoff::allan::{Accuracy, NOISES, Plan, Row, Scatter, Tradeoff};
 use crate::tradeoff::estimators::{Estimator, Gather, Method, Scalar};
 
-/// Where the section of a page begins and ends.
-const BEGIN: &str = "<!-- begin: imu tradeoff allan -->";
-const END: &str = "<!-- end: imu tradeoff allan -->";
+/// What its section of a page is marked with.
+const MARK: &str = "allan";
 
 /// Name of an estimator, of ordinary words.
 #[must_use]
@@ -42,12 +40,6 @@ fn method(estimator: &Estimator) -> &'static str {
     }
 }
 
-/// A title, and rows of cells, of which the first names the columns.
-struct Table {
-    title: String,
-    rows: Vec<Vec<String>>,
-}
-
 /// Columns that say which estimator it is.
 const NAMES: usize = 3;
 
@@ -73,7 +65,7 @@ fn tables(tradeoff: &Tradeoff) -> Vec<Table> {
         ];
         named(estimator, cells)
     }));
-    let mut tables = vec![Table { title: "Price".into(), rows: prices }];
+    let mut tables = vec![Table { title: "Price".into(), names: NAMES, rows: prices }];
     for (k, noise) in NOISES.iter().enumerate() {
         let limit = tradeoff.plan.limit_of_random_walk(noise);
         let mut errors = start(&["K", "× limit", "median", "in 90 %", "none", "N"]);
@@ -90,7 +82,8 @@ fn tables(tradeoff: &Tradeoff) -> Vec<Table> {
             Some(named(estimator, cells))
         }));
         let period = noise.noise_density / noise.random_walk;
-        tables.push(Table { title: format!("Errors where N/K = {period:.0} s"), rows: errors });
+        let title = format!("Errors where N/K = {period:.0} s");
+        tables.push(Table { title, names: NAMES, rows: errors });
     }
     tables
 }
@@ -144,28 +137,7 @@ axis. ns in all: both, for each value of such a record. state: memory for three 
 /// The tables on a terminal.
 #[must_use]
 pub fn table(tradeoff: &Tradeoff) -> String {
-    let mut text = format!("{}\n", about(tradeoff));
-    for Table { title, rows } in tables(tradeoff) {
-        let columns = rows.first().map_or(0, Vec::len);
-        let width = |column: usize| {
-            let cells = rows.iter().filter_map(|row| row.get(column));
-            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = (0..columns).map(width).collect();
-        let _ = write!(text, "\n{title}\n");
-        for row in &rows {
-            for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
-                // Words to the left, numbers to the right.
-                let _ = match column {
-                    0..NAMES => write!(text, "{cell:<width$}  "),
-                    _ => write!(text, "{cell:>width$}  "),
-                };
-            }
-            text.truncate(text.trim_end().len());
-            text.push('\n');
-        }
-    }
-    text + "\n" + COLUMNS + "\n"
+    format!("{}\n{}\n{COLUMNS}\n", about(tradeoff), terminal(&tables(tradeoff)))
 }
 
 /// Everything, for programs; what is no number is null.
@@ -223,48 +195,21 @@ pub fn json(tradeoff: &Tradeoff) -> Value {
 /// name of the plot's file.
 #[must_use]
 pub fn page(before: Option<&str>, tradeoff: &Tradeoff, picture: &str) -> String {
-    const TITLE: &str = "# What accuracy costs\n\nMeasured by `imu tradeoff`; run it to see your own \
-                         machine.\n";
-    let section = section(tradeoff, picture);
-    let before = before.unwrap_or(TITLE);
-    // The first beginning whose end comes before another begins.
-    let whole = before.match_indices(BEGIN).find_map(|(at, _)| {
-        let (head, rest) = before.split_at(at);
-        let inside = rest.get(BEGIN.len()..)?;
-        let next = inside.find(BEGIN).unwrap_or(inside.len());
-        let end = inside.get(..next)?.find(END)? + END.len();
-        Some((head, inside.get(end..)?))
-    });
-    match whole {
-        Some((head, tail)) => format!("{head}{section}{tail}"),
-        None => format!("{}\n\n{section}\n", before.trim_end()),
-    }
+    with_section(before, MARK, &section(tradeoff, picture))
 }
 
 fn section(tradeoff: &Tradeoff, picture: &str) -> String {
     let plan = &tradeoff.plan;
-    let mut text = format!(
-        "{BEGIN}\n## Estimators of N and K\n\n`imu tradeoff allan --records {} --duration \"{}\" --rate {} \
-         --seed {} -o FOLDER` wrote this section.\n\n{}\n\n![error of K over price]({picture})\n\n",
+    format!(
+        "## Estimators of N and K\n\n`imu tradeoff allan --records {} --duration \"{}\" --rate {} \
+         --seed {} -o FOLDER` wrote this section.\n\n{}\n\n![error of K over price]({picture})\n\n{}{COLUMNS}",
         plan.records,
         duration(plan),
         plan.rate_hz,
         plan.seed,
-        about(tradeoff)
-    );
-    for Table { title, rows } in tables(tradeoff) {
-        let _ = write!(text, "### {title}\n\n");
-        for (k, row) in rows.iter().enumerate() {
-            let _ = writeln!(text, "| {} |", row.join(" | "));
-            if k == 0 {
-                let rule = (0..row.len()).map(|k| if k < NAMES { "---" } else { "---:" });
-                let _ = writeln!(text, "| {} |", rule.collect::<Vec<_>>().join(" | "));
-            }
-        }
-        text.push('\n');
-    }
-    let _ = write!(text, "{COLUMNS}\n{END}");
-    text
+        about(tradeoff),
+        markdown(&tables(tradeoff))
+    )
 }
 
 #[cfg(test)]
@@ -272,25 +217,16 @@ mod tests {
     use super::*;
     use crate::tradeoff::allan::measure;
 
+    /// A line for each estimator, in all forms, and a section that takes its own place.
     #[test]
-    fn a_section_takes_the_place_of_itself_and_of_nothing_else() {
+    fn every_estimator_is_in_every_form() {
         let plan = Plan { duration_s: 1000.0, rate_hz: 4.0, records: 2, seed: 3 };
         let tradeoff = measure(&plan, |_| {}).unwrap();
-        let first = page(None, &tradeoff, "a.svg");
-        assert!(first.starts_with("# What accuracy costs") && first.contains("](a.svg)"));
-        assert_eq!(page(Some(&first), &tradeoff, "a.svg"), first);
-        let other = "# Mine\n\nSome words.\n";
-        let with = page(Some(other), &tradeoff, "b.svg");
-        assert!(with.starts_with(other) && with.matches(BEGIN).count() == 1);
-        let more = format!("{with}\nMore.\n");
-        assert_eq!(page(Some(&more), &tradeoff, "b.svg"), more);
-        // A beginning without an end takes nothing with it, however often.
-        let broken = format!("# Mine\n{BEGIN}\nKept.\n");
-        let once = page(Some(&broken), &tradeoff, "b.svg");
-        assert!(once.starts_with(&broken));
-        assert_eq!(page(Some(&once), &tradeoff, "b.svg"), once);
-        // A line for each estimator, in all forms.
         assert_eq!(table(&tradeoff).lines().filter(|line| line.contains(" f64 ")).count(), 3 * 7);
         assert_eq!(json(&tradeoff)["estimators"].as_array().unwrap().len(), 11);
+        let page = |before: Option<&str>| super::page(before, &tradeoff, "a.svg");
+        let first = page(None);
+        assert!(first.contains("](a.svg)"));
+        assert_eq!(page(Some(&first)), first);
     }
 }
