@@ -35,7 +35,7 @@ pub const TARGETS: [Target; 2] = [
             "-global",
             "nrf51-soc.sram-size=1048576",
             "-global",
-            "nrf51-soc.flash-size=1048576",
+            "nrf51-soc.flash-size=4194304",
         ],
         // 16 MHz.
         instructions_per_tick: 62.5,
