@@ -195,7 +195,7 @@ pub fn cost(report: &mut dyn Report) {
         "mean", Mean::new(midpoint, none), single::midpoint_mean;
         "with Jacobian", WithJacobian::new(midpoint, none), single::midpoint_with_jacobian;
         "with covariance", whole, single::midpoint_with_covariance;
-        "three samples, with covariance", whole_of_three, single::three_sample_with_covariance;
+        "three samples with covariance", whole_of_three, single::three_sample_with_covariance;
     );
     let mut whole = whole;
     report.instructions("reading Jacobian and covariance", 1, &mut || {
