@@ -49,7 +49,9 @@ fn what_a_recording_asks_for_is_told_everywhere() {
     assert!(walk > 0.999 * 0.115_057 * flicker, "{line}");
     assert!(line.contains("covers bias instability"), "{line}");
     let page = fs::read_to_string(folder.at("out/report.html")).expect("written");
-    for words in ["Bias instability B", "Rate ramp R", "That is K alone, without the flicker B", "0.664 B"] {
+    for words in
+        ["Bias instability B", "Rate ramp R", "That is K alone, without the flicker B", "0.664 B"]
+    {
         assert!(page.contains(words), "{words}");
     }
     let said = calibrate(&[&bag]);

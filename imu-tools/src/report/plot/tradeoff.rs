@@ -84,9 +84,8 @@ pub fn rules(tradeoff: &rules::Tradeoff) -> Figure {
             chart.name(class, rule.name());
         }
         for wanted in [1.0, 1e-2, 1e-4, 1e-6, 1e-8] {
-            let cheapest = tradeoff.cheapest(motion, wanted);
-            if let Some(way) = cheapest.filter(|way| way.run.carrier == Carrier::F64) {
-                let name = format!("{wanted}°: {}, {} Hz", way.run.rule.name(), way.run.rate);
+            if let Some(way) = tradeoff.cheapest(motion, wanted, &[Carrier::F64]) {
+                let name = format!("{wanted:e}°: {}, {} Hz", way.run.rule.name(), way.run.rate);
                 chart.mark("mark", point(&way), true, &name);
             }
         }

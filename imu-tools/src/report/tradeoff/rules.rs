@@ -87,7 +87,7 @@ fn advice(tradeoff: &Tradeoff) -> Table {
     let names = motions.map(|motion| motion.name().to_owned());
     let mut rows = vec![cells(&["attitude within"], names.into_iter())];
     for wanted in WANTED_DEG {
-        let ways = motions.map(|motion| match tradeoff.cheapest(motion, wanted) {
+        let ways = motions.map(|motion| match tradeoff.cheapest(motion, wanted, &CARRIERS) {
             Some(Way { run, ns_per_second }) => format!(
                 "{}, {}, {} Hz ({} µs)",
                 run.rule.name(),
@@ -167,8 +167,8 @@ A rule’s order shows in how its error falls with the rate. Below about ten sam
 motion (coning and spin at 100 and 200 Hz) no rule helps: what is not sampled is not known. coning+sculling halves \
 midpoint’s error of attitude where the axis of rotation moves, at its price; the position of smooth motion gains \
 nothing. Three samples are worth their price wherever the motion is smooth between samples and the noise is small. \
-Increments are better than samples where a sensor gives them. Where noise decides, as of consumer sensors, all rules \
-but Euler’s are equal: take the cheapest.";
+Increments are better than samples where a sensor gives them. Where noise decides, as of consumer sensors on smooth \
+motion, all rules but Euler’s are equal: take the cheapest.";
 
 /// The tables on a terminal.
 #[must_use]

@@ -117,13 +117,14 @@ impl Tradeoff {
         Some(Way { run: *run, ns_per_second })
     }
 
-    /// The cheapest run on samples that keeps the attitude of a motion within so many degrees; of runs of which the
-    /// price differs by less than 5 % (what timing scatters by) the more accurate one.
+    /// The cheapest run on samples, in one of these kinds of numbers, that keeps the attitude of a motion within so many
+    /// degrees; of runs of which the price differs by less than 5 % (what timing scatters by) the more accurate one.
     #[must_use]
-    pub fn cheapest(&self, motion: Motion, within_deg: f64) -> Option<Way> {
+    pub fn cheapest(&self, motion: Motion, within_deg: f64, carriers: &[Carrier]) -> Option<Way> {
         let good = self.clean.iter().filter(|run| {
             run.motion == motion
                 && !run.rule.takes_increments()
+                && carriers.contains(&run.carrier)
                 && run.errors.attitude_deg <= within_deg
         });
         let ways: Vec<Way> = good.filter_map(|run| self.way(run)).collect();
@@ -192,10 +193,10 @@ mod tests {
         for price in &mut tradeoff.prices {
             price.ns = if price.rule == Rule::ThreeSample { 35.0 } else { 25.0 };
         }
-        let way = tradeoff.cheapest(Motion::Ellipse, 1.0).unwrap();
+        let way = tradeoff.cheapest(Motion::Ellipse, 1.0, &CARRIERS).unwrap();
         assert_eq!((way.run.rate, way.ns_per_second), (50, 1250.0));
-        let way = tradeoff.cheapest(Motion::Ellipse, 1e-4).unwrap();
+        let way = tradeoff.cheapest(Motion::Ellipse, 1e-4, &CARRIERS).unwrap();
         assert_eq!((way.run.rule, way.run.rate), (Rule::ThreeSample, 50));
-        assert_eq!(tradeoff.cheapest(Motion::Spin, 1e-9), None);
+        assert_eq!(tradeoff.cheapest(Motion::Spin, 1e-9, &CARRIERS), None);
     }
 }
