@@ -205,8 +205,8 @@ impl NextRecord {
     /// How long to record, s, so that all axes together show K to [`Known::ENOUGH`], which is good enough for a filter;
     /// `None` where they do, or where it is not length that is wanting.
     ///
-    /// An interval narrows as the root of the length. Where K does not show yet, its bound stands for it, in the limit of
-    /// three axes: sd(ln K) = √(2N/(3KT)).
+    /// An interval narrows as the root of the length. Where K does not show yet, a third of its bound stands for it, in the
+    /// limit of three axes: sd(ln K) = √(2N/(3KT)). Such a bound is two to four times the K that a longer record shows.
     #[must_use]
     pub fn enough_s(sensor: &SensorNoise) -> Option<f64> {
         let (walk, density) = (sensor.pooled.random_walk, sensor.pooled.noise_density);
@@ -222,7 +222,7 @@ impl NextRecord {
                 Parameter::Observable { value: n, .. },
             ) => {
                 let deviation = Known::ENOUGH / 1.645;
-                (2.0 * n / (3.0 * upper90 * deviation * deviation))
+                (2.0 * n / (upper90 * deviation * deviation))
                     .max(record_at_least_s)
                     .max(2.0 * sensor.stamps.span_s)
             }
