@@ -2,7 +2,8 @@
 
 use super::pairs::HOLE;
 use super::rest;
-use super::{GravityFrom, KnownBias, Run, Start};
+use super::run::Run;
+use super::{GravityFrom, KnownBias, Start};
 use crate::calibrate::gravity;
 use crate::scene::display_duration;
 

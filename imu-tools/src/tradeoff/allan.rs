@@ -14,14 +14,12 @@
 //! # Ok::<(), imu_tools::error::Error>(())
 //! ```
 
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::channel;
-
 use imu_core::allan::Parameter;
 use imu_core::noise::{RandomWalk, Sensor, Stage, ThreeAxis, White};
 
 use super::cost::{self, Cost};
 use super::estimators::{ESTIMATORS, Estimates, Estimator, estimate};
+use super::parallel;
 use crate::error::Error;
 
 /// The noise of a sensor.
@@ -199,39 +197,14 @@ fn simulate(
 fn simulate_all(
     plan: &Plan,
     sensor: (Noise, Sensor),
-    mut done: impl FnMut(),
+    done: impl FnMut(),
 ) -> Result<Vec<Estimates>, Error> {
-    let next = AtomicU64::new(0);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut records = vec![None; plan.records as usize];
-    std::thread::scope(|scope| {
-        let (to, from) = channel();
-        for _ in 0..threads {
-            let (to, next) = (to.clone(), &next);
-            scope.spawn(move || {
-                loop {
-                    let record = next.fetch_add(1, Ordering::Relaxed);
-                    if record >= plan.records {
-                        return;
-                    }
-                    let values = simulate(plan, sensor, plan.seed.wrapping_add(record));
-                    let estimates = values.map(|values| estimate(1.0 / plan.rate_hz, &values));
-                    if to.send((record, estimates)).is_err() {
-                        return;
-                    }
-                }
-            });
-        }
-        drop(to);
-        for (record, estimates) in from {
-            if let Some(place) = records.get_mut(record as usize) {
-                *place = Some(estimates?);
-            }
-            done();
-        }
-        Ok::<(), Error>(())
-    })?;
-    Ok(records.into_iter().flatten().flatten().collect())
+    let of = |record| {
+        let values = simulate(plan, sensor, plan.seed.wrapping_add(record))?;
+        Ok::<_, Error>(estimate(1.0 / plan.rate_hz, &values))
+    };
+    let records = parallel::each(plan.records, of, done)?;
+    Ok(records.into_iter().flatten().collect())
 }
 
 /// How far the estimates of each estimator scatter.

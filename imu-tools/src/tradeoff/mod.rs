@@ -8,6 +8,7 @@
 pub mod allan;
 mod cost;
 pub mod estimators;
+mod parallel;
 pub mod rules;
 
 pub use cost::Cost;

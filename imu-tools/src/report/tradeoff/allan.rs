@@ -224,9 +224,8 @@ mod tests {
         let tradeoff = measure(&plan, |_| {}).unwrap();
         assert_eq!(table(&tradeoff).lines().filter(|line| line.contains(" f64 ")).count(), 3 * 7);
         assert_eq!(json(&tradeoff)["estimators"].as_array().unwrap().len(), 11);
-        let page = |before: Option<&str>| super::page(before, &tradeoff, "a.svg");
-        let first = page(None);
+        let first = page(None, &tradeoff, "a.svg");
         assert!(first.contains("](a.svg)"));
-        assert_eq!(page(Some(&first)), first);
+        assert_eq!(page(Some(&first), &tradeoff, "a.svg"), first);
     }
 }

@@ -1,8 +1,5 @@
 //! The same with white noise: where the sensor errs more than the rule does, a better rule buys nothing.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::channel;
-
 use imu_core::State;
 use imu_core::integrate::{self, ConingSculling, Euler, Midpoint, ThreeSample};
 use imu_core::nalgebra::Vector3;
@@ -15,6 +12,7 @@ use super::follow::{Errors, Record, Rule, begin};
 use super::motion::{GRAVITY, MOTIONS, Motion};
 use super::{Plan, impossible};
 use crate::error::Error;
+use crate::tradeoff::parallel;
 
 /// White noise of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,40 +107,12 @@ fn sum_of_squares(
     plan: &Plan,
     record: &Record,
     rate: u32,
-    mut done: impl FnMut(),
+    done: impl FnMut(),
 ) -> Result<Squares, Error> {
-    let next = AtomicU64::new(0);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    // In the order of the records, so that sums are the same on any number of processors.
-    let mut all: Vec<Option<Squares>> = vec![None; plan.records as usize];
-    std::thread::scope(|scope| {
-        let (to, from) = channel();
-        for _ in 0..threads {
-            let (to, next) = (to.clone(), &next);
-            scope.spawn(move || {
-                loop {
-                    let k = next.fetch_add(1, Ordering::Relaxed);
-                    if k >= plan.records {
-                        return;
-                    }
-                    let squares = squares(record, rate, plan.seed.wrapping_add(k));
-                    if to.send((k, squares)).is_err() {
-                        return;
-                    }
-                }
-            });
-        }
-        drop(to);
-        for (k, squares) in from {
-            if let Some(place) = all.get_mut(k as usize) {
-                *place = Some(squares.map_err(impossible)?);
-            }
-            done();
-        }
-        Ok::<(), Error>(())
-    })?;
+    let of = |k| squares(record, rate, plan.seed.wrapping_add(k)).map_err(impossible);
+    let all = parallel::each(plan.records, of, done)?;
     let mut sum = Squares::default();
-    for squares in all.into_iter().flatten() {
+    for squares in all {
         for (sum, more) in sum.as_flattened_mut().iter_mut().zip(squares.as_flattened()) {
             sum.attitude_deg += more.attitude_deg;
             sum.velocity += more.velocity;

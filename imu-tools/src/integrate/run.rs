@@ -1,0 +1,439 @@
+//! One integration under way: from rows of samples to states, holes, errors and files.
+
+use imu_core::nalgebra::Vector3;
+use imu_core::sample::Bias;
+use imu_core::time::Step;
+use imu_core::world::{Flat, RotatingEarth};
+use imu_core::{State, so3};
+
+use super::errors::ErrorSums;
+use super::pairs::{HOLE, Pairs, Row};
+use super::reckoner::{Place, Reckoner};
+use super::rest::Rest;
+use super::thin::Thin;
+use super::truth::{Begin, Truth};
+use super::written::Writer;
+use super::{
+    Begun, GravityFrom, Integration, KnownBias, Method, Motion, Options, Outcome, PathPoint, Start,
+    USUAL_GRAVITY, motion, rest, said,
+};
+use crate::error::Error;
+use crate::output::Output;
+use crate::recording::{Block, Note};
+
+/// How far it has come.
+enum Phase {
+    /// No start yet.
+    Waiting,
+    /// What was read since the start, which may be at rest.
+    Resting(Vec<Row>, Option<Begin>),
+    /// The last reading.
+    Moving(Row),
+    /// A hole that nothing leads across.
+    Stopped,
+}
+
+/// One integration under way.
+pub(super) struct Run<'a> {
+    pub(super) path: &'a str,
+    pub(super) truth_name: Option<String>,
+    pub(super) truth: Option<Truth>,
+    pub(super) options: &'a Options,
+    pub(super) start: Start,
+    pub(super) pairs: Pairs,
+    pub(super) first_ns: Option<i64>,
+    phase: Phase,
+    pub(super) begun: Option<Begun>,
+    pub(super) place: Place,
+    pub(super) lanes: Vec<Lane>,
+    pub(super) true_path: Thin<PathPoint>,
+    pub(super) steps: u64,
+    pub(super) span_ns: i64,
+    /// Readings before the truth begins, and steps over missing samples.
+    pub(super) too_early: u64,
+    pub(super) bridged: u64,
+    /// Sum of the lengths of all specific forces, m/s².
+    pub(super) felt: f64,
+    /// Length of the mean specific force at rest, m/s².
+    pub(super) force_at_rest: Option<f64>,
+    pub(super) remarks: Vec<String>,
+    pub(super) warnings: Vec<String>,
+}
+
+pub(super) struct Lane {
+    method: Method,
+    reckoner: Option<Reckoner>,
+    pub(super) sums: ErrorSums,
+    path: Thin<PathPoint>,
+    writer: Option<Writer>,
+}
+
+impl<'a> Run<'a> {
+    pub(super) fn new(
+        path: &'a str,
+        truth_name: Option<String>,
+        truth: Option<Truth>,
+        options: &'a Options,
+    ) -> Result<Self, Error> {
+        let usual = if truth.is_some() { Start::Truth } else { Start::Rest };
+        let start = options.start.unwrap_or(usual);
+        let asks = if start == Start::Truth { "--start truth" } else { "--bias truth" };
+        let needs_truth = start == Start::Truth || options.bias == Some(KnownBias::Truth);
+        if needs_truth && truth.is_none() {
+            return Err(Error::usage(format!(
+                "{asks} wants a truth, and there is none beside {path}: name it with --truth FILE"
+            )));
+        }
+        let writer = |method| {
+            options.folder.as_ref().map(|folder| Writer::create(folder, method)).transpose()
+        };
+        let lane = |method: &Method| -> Result<Lane, Error> {
+            let (sums, path) = (ErrorSums::default(), Thin::default());
+            Ok(Lane { method: *method, reckoner: None, sums, path, writer: writer(*method)? })
+        };
+        Ok(Self {
+            path,
+            truth_name,
+            truth,
+            options,
+            start,
+            pairs: Pairs::default(),
+            first_ns: None,
+            phase: Phase::Waiting,
+            begun: None,
+            place: Place::Flat(Flat::default()),
+            lanes: options.methods.iter().map(lane).collect::<Result<_, _>>()?,
+            true_path: Thin::default(),
+            steps: 0,
+            span_ns: 0,
+            too_early: 0,
+            bridged: 0,
+            felt: 0.0,
+            force_at_rest: None,
+            remarks: Vec::new(),
+            warnings: Vec::new(),
+        })
+    }
+
+    /// Takes all readings that are complete by now.
+    fn rows(&mut self) -> Result<(), Error> {
+        while let Some(row) = self.pairs.next() {
+            let ns = |s: f64| (s * 1e9) as i64; // saturates
+            let at = row.stamp_ns.saturating_sub(self.first_ns.unwrap_or(row.stamp_ns));
+            let early = self.options.from_s.is_some_and(|from| at < ns(from));
+            let late = self.options.to_s.is_some_and(|to| at > ns(to));
+            if !early && !late {
+                self.row(row)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn row(&mut self, row: Row) -> Result<(), Error> {
+        match &mut self.phase {
+            Phase::Waiting => self.wait(row),
+            Phase::Resting(rows, _) => {
+                let since = rows.first().map_or(row.stamp_ns, |first| first.stamp_ns);
+                rows.push(row);
+                let long = row.stamp_ns.saturating_sub(since) as f64 * 1e-9 >= self.options.rest_s;
+                if long { self.rise() } else { Ok(()) }
+            }
+            Phase::Moving(last) => {
+                let last = *last;
+                self.step(&last, row)
+            }
+            Phase::Stopped => Ok(()),
+        }
+    }
+
+    /// Begins here, if that can be.
+    fn wait(&mut self, row: Row) -> Result<(), Error> {
+        let begin = self.begin(row.stamp_ns)?;
+        if self.truth.is_some() && begin.is_none() {
+            self.too_early += 1;
+            return Ok(());
+        }
+        match begin.filter(|_| self.start == Start::Truth) {
+            Some(begin) => {
+                let bias = self.bias(Some(&begin));
+                let (gravity, from) =
+                    self.options.gravity.map_or((USUAL_GRAVITY, GravityFrom::Usual), |gravity| {
+                        (gravity, GravityFrom::Given)
+                    });
+                self.set_out(row, begin.motion, bias, (gravity, from), begin.differenced)
+            }
+            None => {
+                self.phase = Phase::Resting(vec![row], begin);
+                Ok(())
+            }
+        }
+    }
+
+    /// What the truth says of this instant.
+    fn begin(&mut self, stamp_ns: i64) -> Result<Option<Begin>, Error> {
+        let Some(truth) = &mut self.truth else { return Ok(None) };
+        truth.skip_until(stamp_ns)?;
+        truth.begin(stamp_ns)
+    }
+
+    /// The bias that was told; zero where none was.
+    fn bias(&self, begin: Option<&Begin>) -> Bias<f64> {
+        let none = Bias::default();
+        match self.options.bias {
+            None => none,
+            Some(KnownBias::Given(bias)) => bias,
+            Some(KnownBias::Truth) => begin.and_then(|begin| begin.bias).unwrap_or(none),
+        }
+    }
+
+    /// Begins where the resting began, level.
+    fn rise(&mut self) -> Result<(), Error> {
+        let Phase::Resting(rows, begin) = std::mem::replace(&mut self.phase, Phase::Stopped) else {
+            return Ok(());
+        };
+        let Some(first) = rows.first().copied() else { return Ok(()) };
+        let told = self.bias(begin.as_ref());
+        let rest = Rest::of(&rows).map_err(|why| self.not_at_rest(&rows, &why))?;
+        let force = rest.force - told.specific_force();
+        let heading = begin.map_or(0.0, |begin| rest::heading(&begin.motion.attitude_wb));
+        let attitude_wb = rest::level(&force, heading);
+        let measured = (motion::length(&force), GravityFrom::Rest);
+        self.force_at_rest = Some(measured.0);
+        let gravity = self.options.gravity.map_or(measured, |g| (g, GravityFrom::Given));
+        let bias = if self.options.bias.is_some() {
+            told
+        } else {
+            let turning = match self.options.place {
+                None => Vector3::zeros(),
+                Some(place) => so3::rotate(&so3::inverse(&attitude_wb), &earth(place)?.rate()),
+            };
+            Bias::new(rest.rate - turning, Vector3::zeros()).map_err(|e| self.impossible(e))?
+        };
+        let position_w = begin.map_or(Vector3::zeros(), |begin| begin.motion.position_w);
+        let motion = Motion { attitude_wb, velocity_w: Some(Vector3::zeros()), position_w };
+        self.set_out(first, motion, bias, gravity, false)?;
+        rows.into_iter().skip(1).try_for_each(|row| self.row(row))
+    }
+
+    fn not_at_rest(&self, rows: &[Row], why: &str) -> Error {
+        let ends = rows.last().zip(rows.first());
+        let span = ends.map_or(0, |(last, first)| last.stamp_ns.saturating_sub(first.stamp_ns));
+        let mend = if self.truth.is_some() {
+            "start from the truth (--start truth), or from a time at which it rests (--from)"
+        } else {
+            "name a truth to start from (--truth FILE), or start from a time at which it rests (--from)"
+        };
+        Error::data(format!(
+            "the first {:.3} s of {} are not at rest ({why}): {mend}",
+            span as f64 * 1e-9,
+            self.path
+        ))
+    }
+
+    /// The first step can be taken.
+    fn set_out(
+        &mut self,
+        row: Row,
+        motion: Motion,
+        bias: Bias<f64>,
+        gravity: (f64, GravityFrom),
+        differenced: bool,
+    ) -> Result<(), Error> {
+        let gravity = match self.options.place {
+            None => {
+                let down = Vector3::new(0.0, 0.0, -gravity.0);
+                self.place = Place::Flat(Flat::new(down).map_err(|e| self.impossible(e))?);
+                gravity
+            }
+            Some(place) => {
+                let earth = earth(place)?;
+                self.place = Place::Earth(earth);
+                (-earth.gravity().z, GravityFrom::Place)
+            }
+        };
+        self.begun = Some(Begun {
+            from: self.start,
+            stamp_ns: row.stamp_ns,
+            motion,
+            bias,
+            gravity: gravity.0,
+            gravity_from: gravity.1,
+            differenced,
+        });
+        if self.truth.is_some() {
+            self.true_path.push(PathPoint { t_s: 0.0, position_w: motion.position_w.into() });
+        }
+        self.place_at(row, &motion)
+    }
+
+    /// Puts all rules into this state.
+    fn place_at(&mut self, row: Row, motion: &Motion) -> Result<(), Error> {
+        let velocity_w = motion.velocity_w.unwrap_or_else(Vector3::zeros);
+        let state = State::new(motion.attitude_wb, velocity_w, motion.position_w)
+            .map_err(|e| self.impossible(e))?;
+        let (bias, t_s) = (self.taken_off(), self.seconds(row.stamp_ns));
+        for lane in &mut self.lanes {
+            lane.reckoner = Some(Reckoner::new(lane.method, state, &row.reading.minus(&bias)));
+            lane.keep(row.stamp_ns, t_s, &state)?;
+        }
+        self.phase = Phase::Moving(row);
+        Ok(())
+    }
+
+    fn taken_off(&self) -> Bias<f64> {
+        self.begun.map_or_else(Bias::default, |begun| begun.bias)
+    }
+
+    /// From the start, s.
+    fn seconds(&self, stamp_ns: i64) -> f64 {
+        let start = self.begun.map_or(stamp_ns, |begun| begun.stamp_ns);
+        stamp_ns.saturating_sub(start) as f64 * 1e-9
+    }
+
+    fn step(&mut self, last: &Row, row: Row) -> Result<(), Error> {
+        let ns = row.stamp_ns.saturating_sub(last.stamp_ns);
+        let period = self.pairs.period_ns().unwrap_or(ns);
+        let step = Step::between(last.stamp_ns, row.stamp_ns).ok();
+        let Some(dt) = step.filter(|_| ns <= period.saturating_mul(HOLE)) else {
+            return self.cross(last, row);
+        };
+        self.bridged += u64::from(ns > period.saturating_add(period / 2));
+        let (bias, place) = (self.taken_off(), self.place);
+        let (before_s, t_s) = (self.seconds(last.stamp_ns), self.seconds(row.stamp_ns));
+        let mut before = Vec::with_capacity(self.lanes.len());
+        for lane in &mut self.lanes {
+            let Some(reckoner) = &mut lane.reckoner else { continue };
+            before.push(Motion::from(reckoner.state()));
+            let moved = reckoner.advance(&row.reading, &bias, &dt, &place);
+            moved.map_err(|error| impossible(self.path, error))?;
+            let state = *reckoner.state();
+            lane.keep(row.stamp_ns, t_s, &state)?;
+        }
+        self.phase = Phase::Moving(row);
+        self.felt += motion::length(&row.reading.specific_force());
+        (self.steps, self.span_ns) = (self.steps + 1, self.span_ns.saturating_add(ns));
+        let Some(truth) = &mut self.truth else { return Ok(()) };
+        while let Some(known) = truth.next_until(row.stamp_ns)? {
+            let part = (known.stamp_ns - last.stamp_ns) as f64 / ns as f64;
+            let at_s = before_s + part * dt.seconds();
+            let position_w = known.motion.position_w.into();
+            self.true_path.push(PathPoint { t_s: at_s, position_w });
+            for (lane, before) in self.lanes.iter_mut().zip(&before) {
+                let Some(reckoner) = &lane.reckoner else { continue };
+                let now = Motion::from(reckoner.state());
+                let exact = known.stamp_ns == row.stamp_ns;
+                let found = if exact { now } else { before.towards(&now, dt.seconds(), part) };
+                lane.sums.push(at_s, &found, &known.motion);
+            }
+        }
+        Ok(())
+    }
+
+    /// Across a hole only the truth leads.
+    fn cross(&mut self, last: &Row, row: Row) -> Result<(), Error> {
+        let at_s = self.seconds(last.stamp_ns);
+        let long_s = row.stamp_ns.saturating_sub(last.stamp_ns) as f64 * 1e-9;
+        let begin = self.begin(row.stamp_ns)?;
+        self.warnings.push(said::hole(at_s, long_s, begin.is_some(), self.truth.is_some()));
+        let Some(begin) = begin else {
+            self.phase = Phase::Stopped;
+            return Ok(());
+        };
+        if let (Some(KnownBias::Truth), Some(bias), Some(begun)) =
+            (self.options.bias, begin.bias, &mut self.begun)
+        {
+            begun.bias = bias;
+        }
+        self.place_at(row, &begin.motion)
+    }
+
+    /// That something was integrated.
+    fn check(&mut self) -> Result<(), Error> {
+        if let Phase::Resting(..) = &self.phase {
+            return Err(Error::data(format!(
+                "{} ends before the {} s at rest are over that a start takes: ask for less with --rest, or name a \
+                 truth to start from (--truth FILE)",
+                self.path, self.options.rest_s
+            )));
+        }
+        if self.steps > 0 {
+            return Ok(());
+        }
+        Err(Error::data(said::nothing(self)))
+    }
+
+    /// Takes a block of samples of both sensors.
+    pub(super) fn take(&mut self, block: &Block) -> Result<(), Error> {
+        self.pairs.take(block);
+        let first = [block.gyroscope.first(), block.accelerometer.first()];
+        let first = first.into_iter().flatten().map(|sample| sample.stamp_ns).min();
+        self.first_ns = self.first_ns.or(first);
+        self.rows()
+    }
+
+    /// The results, where there are any, and the files; `notes` are those of the source.
+    pub(super) fn finish(mut self, notes: Vec<Note>) -> Result<(Integration, Vec<Output>), Error> {
+        self.pairs.end();
+        self.rows()?;
+        self.check()?;
+        for note in notes {
+            match note {
+                Note::Info(text) => self.remarks.push(text),
+                Note::Warning(text) => self.warnings.push(text),
+            }
+        }
+        self.remark();
+        let Some(begun) = self.begun else { return Err(Error::data(said::nothing(&self))) };
+        let (mut outcomes, mut files) = (Vec::new(), Vec::new());
+        for lane in self.lanes {
+            if let Some(writer) = lane.writer {
+                files.extend(writer.complete()?);
+            }
+            outcomes.push(Outcome {
+                method: lane.method,
+                last: lane.reckoner.map_or(begun.motion, |reckoner| reckoner.state().into()),
+                errors: lane.sums.errors(),
+                path: lane.path,
+                error_curve: lane.sums.curve,
+            });
+        }
+        let integration = Integration {
+            path: self.path.to_owned(),
+            truth: self.truth_name,
+            kind: self.options.kind,
+            steps: self.steps,
+            span_s: self.span_ns as f64 * 1e-9,
+            begun,
+            remarks: self.remarks,
+            warnings: self.warnings,
+            outcomes,
+            true_path: self.true_path,
+        };
+        Ok((integration, files))
+    }
+
+    fn impossible(&self, error: imu_core::Error) -> Error {
+        impossible(self.path, error)
+    }
+}
+
+/// What the core refuses although it was looked at before.
+fn impossible(path: &str, error: imu_core::Error) -> Error {
+    Error::data(format!("{path} cannot be integrated: {error}; look at it with imu info"))
+}
+
+fn earth((latitude, height): (f64, f64)) -> Result<RotatingEarth<f64>, Error> {
+    RotatingEarth::new(latitude, height).map_err(|_| {
+        Error::usage("--latitude wants degrees from -90 to 90, --height metres within 100 km")
+    })
+}
+
+impl Lane {
+    fn keep(&mut self, stamp_ns: i64, t_s: f64, state: &State<f64>) -> Result<(), Error> {
+        self.path.push(PathPoint { t_s, position_w: state.position_w().into() });
+        match &mut self.writer {
+            Some(writer) => writer.write(stamp_ns, state),
+            None => Ok(()),
+        }
+    }
+}
