@@ -60,7 +60,7 @@ fn what_a_recording_asks_for_is_told_everywhere() {
         "{}",
         said.out
     );
-    assert!(said.err.contains("K stands beside it"), "{}", said.err);
+    assert!(said.err.contains("filters know no B"), "{}", said.err);
 }
 
 #[test]
