@@ -25,6 +25,22 @@ enum What {
     Rules(Rules),
 }
 
+/// What all of them take.
+#[derive(Args, Debug)]
+struct Common {
+    /// Seed of the first record
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+
+    /// Write tradeoff.md, with a plot, into a folder; other sections of the page stay as they are
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+}
+
 /// Estimators of N and K: their errors, over many simulated records, beside their price.
 ///
 /// Ladders of octaves over disjoint blocks and over four windows an averaging time, all overlapping
@@ -43,17 +59,8 @@ struct Allan {
     #[arg(long, value_name = "HZ", default_value_t = 20.0, allow_negative_numbers = true)]
     rate: f64,
 
-    /// Seed of the first record
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
-
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
-
-    /// Write tradeoff.md, with a plot, into a folder; other sections of the page stay as they are
-    #[arg(short, long, value_name = "FOLDER")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    common: Common,
 }
 
 /// Integration rules: their errors on five motions, at any rate, in f64 and f32, beside their price.
@@ -77,17 +84,8 @@ struct Rules {
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     records: u64,
 
-    /// Seed of the first record
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
-
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
-
-    /// Write tradeoff.md, with a plot, into a folder; other sections of the page stay as they are
-    #[arg(short, long, value_name = "FOLDER")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    common: Common,
 }
 
 impl Tradeoff {
@@ -105,10 +103,10 @@ impl Allan {
             duration_s: parse_duration(&self.duration)? as f64 / 1e9,
             rate_hz: self.rate,
             records: self.records,
-            seed: self.seed,
+            seed: self.common.seed,
         };
         plan.check()?;
-        let files = Files::create(self.output.as_deref(), "tradeoff-allan.svg")?;
+        let files = self.common.files("tradeoff-allan.svg")?;
         let bar = progress::records(2 * plan.records, "simulating");
         let tradeoff = measure(&plan, |done| bar.set_position(done))?;
         bar.finish_and_clear();
@@ -118,11 +116,10 @@ impl Allan {
             };
             files.write(page, &report::plot::tradeoff(&tradeoff))?;
         }
-        if self.json {
-            super::print(&format!("{:#}\n", report::tradeoff::allan::json(&tradeoff)))
-        } else {
-            super::print(&report::tradeoff::allan::table(&tradeoff))
-        }
+        self.common.print(
+            || report::tradeoff::allan::json(&tradeoff),
+            || report::tradeoff::allan::table(&tradeoff),
+        )
     }
 }
 
@@ -137,10 +134,10 @@ impl Rules {
             rates: sorted(self.rates),
             noisy_rates: if self.no_noise { Vec::new() } else { sorted(self.noisy_rates) },
             records: self.records,
-            seed: self.seed,
+            seed: self.common.seed,
         };
         plan.check()?;
-        let files = Files::create(self.output.as_deref(), "tradeoff-rules.svg")?;
+        let files = self.common.files("tradeoff-rules.svg")?;
         let bar = progress::records(plan.steps(), "following motions");
         let tradeoff = rules::measure(&plan, |done| bar.set_position(done))?;
         bar.finish_and_clear();
@@ -150,11 +147,27 @@ impl Rules {
             };
             files.write(page, &report::plot::rules(&tradeoff))?;
         }
-        if self.json {
-            super::print(&format!("{:#}\n", report::tradeoff::rules::json(&tradeoff)))
-        } else {
-            super::print(&report::tradeoff::rules::table(&tradeoff))
-        }
+        self.common.print(
+            || report::tradeoff::rules::json(&tradeoff),
+            || report::tradeoff::rules::table(&tradeoff),
+        )
+    }
+}
+
+impl Common {
+    /// The page and the picture, of this name, where a folder is asked for.
+    fn files(&self, picture: &'static str) -> Result<Option<Files>, Error> {
+        self.output.as_deref().map(|folder| Files::create(folder, picture)).transpose()
+    }
+
+    /// As JSON or as tables.
+    fn print(
+        &self,
+        json: impl FnOnce() -> serde_json::Value,
+        table: impl FnOnce() -> String,
+    ) -> Result<(), Error> {
+        let text = if self.json { format!("{:#}\n", json()) } else { table() };
+        super::print(&text)
     }
 }
 
@@ -167,9 +180,8 @@ struct Files {
 }
 
 impl Files {
-    /// None where no folder is asked for; the picture is called by its `name`.
-    fn create(folder: Option<&Path>, name: &'static str) -> Result<Option<Self>, Error> {
-        let Some(folder) = folder else { return Ok(None) };
+    /// The picture is called by its `name`.
+    fn create(folder: &Path, name: &'static str) -> Result<Self, Error> {
         if folder == Path::new("-") {
             return Err(Error::usage(
                 "-o names a folder, in which a page and its plot are written, and no pipe"
@@ -184,7 +196,7 @@ impl Files {
             Err(error) => return Err(Error::io("read", &page, error)),
         };
         let picture = Output::create(&folder.join(name))?;
-        Ok(Some(Self { before, page: Output::create(&page)?, name, picture }))
+        Ok(Self { before, page: Output::create(&page)?, name, picture })
     }
 
     fn write(
