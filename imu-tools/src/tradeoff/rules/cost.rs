@@ -18,10 +18,11 @@ use super::follow::{
 };
 use super::motion::{GRAVITY, Motion};
 
-/// Steps of a pass: 16 kHz for one second, 0.8 MB of samples in `f64`.
-const RATE: i64 = 16_384;
-/// All take turns, and the fastest turn of each counts.
-const PASSES: usize = 60;
+/// Steps of a pass: 4 kHz for one second, 0.2 MB of samples in `f64`.
+const RATE: i64 = 4_096;
+/// All take turns, and the fastest turn of each counts: some seconds in all, as neighbours on a shared machine come
+/// and go.
+const PASSES: usize = 1000;
 
 /// The price of a rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
