@@ -39,7 +39,7 @@ fn what_is_written_is_read_back_from_every_level() {
         let (a, b) = (block.gyroscope.split_at(700), block.accelerometer.split_at(500));
         for (g, a) in [(a.0, b.0), (a.1, b.1)] {
             let (gyroscope, accelerometer) = (g.to_vec(), a.to_vec());
-            sink.write_block(&Block { gyroscope, accelerometer, temperature: vec![] }).unwrap();
+            sink.write_block(&Block { gyroscope, accelerometer, ..Block::default() }).unwrap();
         }
         sink.finish().unwrap();
     }

@@ -10,7 +10,7 @@ use super::reading::{Opened, Reading};
 use super::{progress, same_target};
 use crate::error::Error;
 use crate::integrate::{
-    Integration, Kind, KnownBias, Method, Options, Start, Truth, file_names, integrate,
+    Against, Integration, Kind, KnownBias, Method, Options, Start, file_names, integrate,
 };
 use crate::output::Output;
 use crate::recording::poses;
@@ -22,6 +22,8 @@ Examples:
       from rest at the start: where each rule ends
   imu integrate ellipse.csv --samples instantaneous --truth truth.csv -o out
       errors of all rules; trajectory_RULE.csv and .tum, trajectory.svg and error.svg in out
+  imu integrate vicon.bag --samples mean --truth-topic /vicon/imu/imu
+      poses in a topic of the recording itself, which are those of the IMU
   imu integrate V1_01_easy --samples mean --rule previous-increment --bias truth
       a folder of EuRoC, whose ground truth is found beside it, less the bias that it knows
   imu integrate log.csv --samples mean --latitude 47.4 --height 410
@@ -50,6 +52,13 @@ pub(super) struct Integrate {
     /// NAME.truth.csv or NAME.truth.tum beside the recording, or EuRoC's folder]
     #[arg(long, value_name = "FILE")]
     truth: Option<PathBuf>,
+    /// The truth: poses in this topic of the recording, PoseStamped, PoseWithCovarianceStamped,
+    /// TransformStamped or Odometry [default: the only one, where no file lies beside the recording]
+    #[arg(long, value_name = "TOPIC", conflicts_with = "truth")]
+    truth_topic: Option<String>,
+    /// Compare with nothing, although a truth lies beside the recording or in it
+    #[arg(long, conflicts_with_all = ["truth", "truth_topic"])]
+    no_truth: bool,
     /// Where the first state comes from [default: truth where there is one, else rest]
     #[arg(long, value_enum, value_name = "STATE")]
     start: Option<StartName>,
@@ -107,17 +116,26 @@ enum StartName {
 impl Integrate {
     pub(super) fn run(self) -> Result<(), Error> {
         let options = self.options()?;
-        let truth = self.truth.clone().or_else(|| poses::beside(&self.file));
-        self.check_output(&options, truth.as_deref())?;
-        let opened = truth.as_deref().map(Truth::open).transpose()?;
-        let named = truth.as_deref().map(|path| path.display().to_string()).zip(opened);
+        let file = match (&self.truth, &self.truth_topic) {
+            (Some(file), _) => Some(file.clone()),
+            (None, None) if !self.no_truth => poses::beside(&self.file),
+            _ => None,
+        };
+        self.check_output(&options, file.as_deref())?;
         let Opened { source, names } = self.reading.open(std::slice::from_ref(&self.file))?;
+        let against = match (&file, &self.truth_topic) {
+            (Some(file), _) => Against::file(file)?,
+            (None, topic) if !self.no_truth => {
+                Against::topic(&self.file, topic.as_deref(), &self.reading.options())?
+            }
+            _ => Against::Nothing,
+        };
         if let Some(folder) = &options.folder {
             std::fs::create_dir_all(folder).map_err(|e| Error::io("make the folder", folder, e))?;
         }
         let bar = progress::bytes(source.bytes_total(), "integrating");
         let (integration, files) =
-            integrate(source, &names.join(", "), named, &options, |at| bar.set_position(at))?;
+            integrate(source, &names.join(", "), against, &options, |at| bar.set_position(at))?;
         bar.finish_and_clear();
         if let Some(folder) = &options.folder {
             write_into(folder, &integration, files)?;

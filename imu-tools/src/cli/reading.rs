@@ -74,9 +74,10 @@ impl Reading {
     }
 
     /// The flags as the library takes them.
-    fn options(&self) -> ReadOptions {
+    pub(super) fn options(&self) -> ReadOptions {
         ReadOptions {
             topic: self.topic.clone(),
+            poses: None,
             survey: false,
             bag_time: self.bag_time,
             columns: self.columns.clone(),

@@ -9,19 +9,20 @@
 //! [`imu_core::time::Step`], cannot be: behind it everything begins anew in the state that the truth tells, or ends.
 //!
 //! ```
-//! use imu_tools::integrate::{Kind, Method, Options, integrate};
+//! use imu_tools::integrate::{Against, Kind, Method, Options, integrate};
 //! use imu_tools::recording::{self, ReadOptions};
 //! use imu_tools::scene::{Scene, Simulator};
 //!
 //! let scene = Scene { duration_ns: 10_000_000_000, ..Scene::default() }; // at rest, no errors
 //! let source = Box::new(Simulator::new(&scene)?);
 //! let options = Options::new(Kind::Instantaneous);
-//! let (result, _files) = integrate(source, "simulated", None, &options, |_| {})?;
+//! let (result, _files) = integrate(source, "simulated", Against::Nothing, &options, |_| {})?;
 //! let midpoint = result.outcomes.iter().find(|outcome| outcome.method == Method::Midpoint).unwrap();
 //! assert!(midpoint.last.position_w.abs().max() < 1e-9);
 //! # Ok::<(), imu_tools::error::Error>(())
 //! ```
 
+mod against;
 mod align;
 mod errors;
 mod method;
@@ -39,6 +40,7 @@ use std::path::PathBuf;
 
 use imu_core::sample::Bias;
 
+pub use against::Against;
 pub use errors::{ErrorAt, Errors};
 pub use method::{Kind, Method};
 pub use motion::Motion;
@@ -201,22 +203,21 @@ pub struct PathPoint {
     pub position_w: [f64; 3],
 }
 
-/// Integrates a recording by several rules at once, and compares with the truth; `path` and the truth's name are for
-/// messages, `progress` is told the bytes read. The trajectories, where a folder was named, are complete and take
+/// Integrates a recording by several rules at once, and compares with the truth; `path` is for messages,
+/// `progress` is told the bytes read. The trajectories, where a folder was named, are complete and take
 /// their places when they are finished.
 ///
 /// # Errors
-/// What source and truth say; no samples of both sensors; a start that is not at rest, or of which the truth knows
-/// nothing; a truth where one is needed; nothing that could be integrated.
+/// What source and truth say; no samples of both sensors; a start that is not at rest, or of which the truth knows nothing; a truth where one is needed; nothing that
+/// could be integrated.
 pub fn integrate(
     source: Box<dyn Source>,
     path: &str,
-    truth: Option<(String, Truth)>,
+    against: Against,
     options: &Options,
     mut progress: impl FnMut(u64),
 ) -> Result<(Integration, Vec<Output>), Error> {
-    let (truth_name, truth) = truth.unzip();
-    let mut run = Run::new(path, truth_name, truth, options)?;
+    let mut run = Run::new(path, against, options)?;
     let mut source = read_ahead(source, |block, at| {
         progress(at.bytes);
         run.take(block)

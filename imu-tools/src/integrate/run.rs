@@ -6,6 +6,7 @@ use imu_core::time::Step;
 use imu_core::world::{Flat, RotatingEarth};
 use imu_core::{State, so3};
 
+use super::against::Against;
 use super::errors::ErrorSums;
 use super::pairs::{HOLE, Pairs, Row};
 use super::reckoner::{Place, Reckoner};
@@ -38,6 +39,8 @@ pub(super) struct Run<'a> {
     pub(super) path: &'a str,
     pub(super) truth_name: Option<String>,
     pub(super) truth: Option<Truth>,
+    /// Topics of poses of which none was chosen.
+    pub(super) unchosen: Option<String>,
     pub(super) options: &'a Options,
     pub(super) start: Start,
     pub(super) pairs: Pairs,
@@ -71,18 +74,28 @@ pub(super) struct Lane {
 impl<'a> Run<'a> {
     pub(super) fn new(
         path: &'a str,
-        truth_name: Option<String>,
-        truth: Option<Truth>,
+        against: Against,
         options: &'a Options,
     ) -> Result<Self, Error> {
+        let (truth_name, truth, remarks, unchosen) = match against {
+            Against::Truth { name, truth, told } => (Some(name), Some(*truth), told, None),
+            Against::Unchosen(list) => (None, None, Vec::new(), Some(list)),
+            Against::Nothing => (None, None, Vec::new(), None),
+        };
         let usual = if truth.is_some() { Start::Truth } else { Start::Rest };
         let start = options.start.unwrap_or(usual);
         let asks = if start == Start::Truth { "--start truth" } else { "--bias truth" };
         let needs_truth = start == Start::Truth || options.bias == Some(KnownBias::Truth);
         if needs_truth && truth.is_none() {
-            return Err(Error::usage(format!(
-                "{asks} wants a truth, and there is none beside {path}: name it with --truth FILE"
-            )));
+            return Err(Error::usage(match unchosen {
+                None => format!(
+                    "{asks} wants a truth, and there is none beside {path}: name it with --truth FILE"
+                ),
+                Some(list) => format!(
+                    "{asks} wants a truth, and {path} has several topics of poses: {list}; choose one with \
+                     --truth-topic TOPIC"
+                ),
+            }));
         }
         let writer = |method| {
             options.folder.as_ref().map(|folder| Writer::create(folder, method)).transpose()
@@ -95,6 +108,7 @@ impl<'a> Run<'a> {
             path,
             truth_name,
             truth,
+            unchosen,
             options,
             start,
             pairs: Pairs::default(),
@@ -110,7 +124,7 @@ impl<'a> Run<'a> {
             bridged: 0,
             felt: 0.0,
             force_at_rest: None,
-            remarks: Vec::new(),
+            remarks,
             warnings: Vec::new(),
         })
     }
@@ -372,10 +386,18 @@ impl<'a> Run<'a> {
     }
 
     /// The results, where there are any, and the files; `notes` are those of the source.
-    pub(super) fn finish(mut self, notes: Vec<Note>) -> Result<(Integration, Vec<Output>), Error> {
+    pub(super) fn finish(
+        mut self,
+        mut notes: Vec<Note>,
+    ) -> Result<(Integration, Vec<Output>), Error> {
         self.pairs.end();
         self.rows()?;
         self.check()?;
+        if let Some(truth) = &mut self.truth {
+            // Both readings of one recording find the same damage.
+            let others = truth.finish()?.into_iter().filter(|note| !notes.contains(note));
+            notes.extend(others.collect::<Vec<_>>());
+        }
         for note in notes {
             match note {
                 Note::Info(text) => self.remarks.push(text),

@@ -53,7 +53,8 @@ pub(super) fn nothing(run: &Run<'_>) -> String {
             }
         });
         return format!(
-            "the truth {} knows no state at any sample of {path}{apart}; are their clocks the same?",
+            "the truth {} knows no state at any sample of {path}{apart}; are their clocks the same? (--no-truth goes \
+             without)",
             run.truth_name.as_deref().unwrap_or_default()
         );
     }
@@ -125,11 +126,15 @@ impl Run<'_> {
         self.remark_on_start();
         let compared = self.lanes.iter().any(|lane| lane.sums.errors().is_some());
         if self.truth.is_none() {
-            self.remarks.push(
-                "there is no truth to compare with: name one with --truth FILE (TUM, EuRoC or that of \
-                 imu simulate)"
+            self.remarks.push(match &self.unchosen {
+                Some(list) => format!(
+                    "{} has several topics of poses: {list}; compare with one by --truth-topic TOPIC",
+                    self.path
+                ),
+                None => "there is no truth to compare with: name one with --truth FILE (TUM, EuRoC or that of \
+                         imu simulate)"
                     .into(),
-            );
+            });
         } else if !compared {
             self.warnings.push("the truth has no pose after the start: nothing is compared".into());
         }

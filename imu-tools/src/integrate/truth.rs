@@ -1,13 +1,13 @@
-//! The truth beside a recording, front to back, with as much of it at hand as a start needs.
+//! The truth of a recording, front to back, with as much of it at hand as a start needs.
 
 use std::collections::VecDeque;
-use std::path::Path;
 
 use imu_core::nalgebra::{Quaternion, Vector3};
 use imu_core::sample::Bias;
 
 use super::motion::Motion;
 use crate::error::Error;
+use crate::recording::Note;
 use crate::recording::poses::{Pose, Poses};
 
 /// Poses so near an instant tell the velocity there, ns.
@@ -32,7 +32,7 @@ pub(super) struct Begin {
     pub(super) differenced: bool,
 }
 
-/// A file of the truth being read.
+/// The truth being read.
 pub struct Truth {
     poses: Poses,
     /// What was read and is still of use, in order.
@@ -48,20 +48,23 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Opens a trajectory of TUM, EuRoC's ground truth, or the truth that [`crate::scene::TruthWriter`] writes.
-    ///
-    /// # Errors
-    /// When there is no such file, or it holds no poses.
-    pub fn open(path: &Path) -> Result<Self, Error> {
-        Ok(Self {
-            poses: Poses::open(path)?,
+    /// The truth that these poses are, none of which was read.
+    #[must_use]
+    pub fn of(poses: Poses) -> Self {
+        Self {
+            poses,
             at_hand: VecDeque::new(),
             handed: 0,
             last_ns: None,
             span_ns: None,
             left_out: 0,
             ended: false,
-        })
+        }
+    }
+
+    /// What there is to tell of its source, once nothing more is wanted of it.
+    pub(super) fn finish(&mut self) -> Result<Vec<Note>, Error> {
+        self.poses.finish()
     }
 
     /// First and last stamp of what was read so far, ns.

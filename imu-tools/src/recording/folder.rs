@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{ReadOptions, Source, euroc, rosbag2};
+use super::{ReadOptions, Source, euroc, poses, rosbag2};
 use crate::error::Error;
 
 /// Opens the recording in a folder.
@@ -10,11 +10,16 @@ use crate::error::Error;
 /// # Errors
 /// When there is none, or more than one.
 pub fn open(folder: &Path, options: &ReadOptions) -> Result<Box<dyn Source>, Error> {
-    if let Some(source) = euroc::open(folder, options)? {
+    if options.poses.is_none()
+        && let Some(source) = euroc::open(folder, options)?
+    {
         return Ok(source);
     }
     if rosbag2::is_rosbag2(folder) {
         return Ok(Box::new(rosbag2::FolderReader::open(folder, options)?));
+    }
+    if let Some(wanted) = &options.poses {
+        return poses::without_topics(folder, wanted);
     }
     Err(Error::data(format!(
         "{} is a folder without a recording: name a file in it, or a folder with metadata.yaml, \

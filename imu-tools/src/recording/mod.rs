@@ -42,7 +42,9 @@ mod inside;
 mod joined;
 pub mod mcap;
 mod noted;
+mod nothing;
 pub mod numpy;
+mod pose_body;
 pub mod poses;
 mod ros2;
 pub mod rosbag2;
@@ -68,6 +70,7 @@ pub use units::{ForceUnit, RateUnit, TimeUnit};
 
 use crate::error::Error;
 use input::Input;
+use poses::{Pose, PoseTopic};
 
 /// One reading of one three-axis sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,6 +91,8 @@ pub struct Block {
     pub accelerometer: Vec<Sample>,
     /// What a thermometer in or near the sensor said, where there is one.
     pub temperature: Vec<Temperature>,
+    /// Where the body was, of a topic that was asked for ([`ReadOptions::poses`]).
+    pub poses: Vec<Pose>,
 }
 
 /// One reading of a thermometer.
@@ -103,7 +108,10 @@ impl Block {
     /// Whether nothing is in it.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.gyroscope.is_empty() && self.accelerometer.is_empty() && self.temperature.is_empty()
+        self.gyroscope.is_empty()
+            && self.accelerometer.is_empty()
+            && self.temperature.is_empty()
+            && self.poses.is_empty()
     }
 
     /// Empties all lists and keeps their memory.
@@ -111,6 +119,7 @@ impl Block {
         self.gyroscope.clear();
         self.accelerometer.clear();
         self.temperature.clear();
+        self.poses.clear();
     }
 
     /// Whether one more sample of each sensor fits.
@@ -119,6 +128,7 @@ impl Block {
         self.gyroscope.len() < BLOCK_SAMPLES
             && self.accelerometer.len() < BLOCK_SAMPLES
             && self.temperature.len() < BLOCK_SAMPLES
+            && self.poses.len() < BLOCK_SAMPLES
     }
 }
 
@@ -214,6 +224,8 @@ pub struct ReadOptions {
     /// accelerometer's; `imu` and `/imu` are the same. `None` takes the only one, or the pair that is
     /// named so.
     pub topic: Option<String>,
+    /// Read poses, and nothing of an IMU.
+    pub poses: Option<PoseTopic>,
     /// Where there are several IMUs, take the first and say so, in the place of an error: for those
     /// who want to know what a recording holds.
     pub survey: bool,
@@ -291,11 +303,14 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     if holds(mcap::MAGIC) || (named("mcap") && !other) {
         return Ok(Box::new(mcap::McapReader::open(input, options)?));
     }
-    if holds(ulog::MAGIC) || (named("ulg") && !other) {
-        return Ok(Box::new(ulog::UlogReader::open(input, options)?));
-    }
     if holds(rosbag2::MAGIC) || (named("db3") && !other) {
         return Ok(Box::new(rosbag2::DatabaseReader::open(input, options)?));
+    }
+    if let Some(wanted) = &options.poses {
+        return poses::without_topics(path, wanted);
+    }
+    if holds(ulog::MAGIC) || (named("ulg") && !other) {
+        return Ok(Box::new(ulog::UlogReader::open(input, options)?));
     }
     if numpy::is_numpy(start) {
         return Ok(Box::new(numpy::NumpyReader::open(input, options)?));
@@ -311,8 +326,8 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
     let names =
         [("bag", "ROS 1 bag"), ("mcap", "MCAP file"), ("ulg", "ULog"), ("db3", "rosbag2 database")];
     let misnamed = names.into_iter().find(|(ending, _)| named(ending)).map(|(_, what)| what);
-    if options.columns.is_none() && options.map.is_none() && poses::Poses::are_in(&mut input)? {
-        return Err(poses::Poses::of(input)?.no_samples());
+    if options.columns.is_none() && options.map.is_none() && poses::Table::are_in(&mut input)? {
+        return Err(poses::Table::of(input)?.no_samples());
     }
     let table = csv::CsvReader::open(input, options);
     let Some(what) = misnamed else { return Ok(Box::new(table?)) };

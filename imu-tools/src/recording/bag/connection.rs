@@ -2,6 +2,7 @@
 
 use super::record::Header;
 use super::{imu_message, temperature_message};
+use crate::recording::pose_body::PoseMessage;
 use crate::recording::topics::{Connection, Holds};
 
 /// The connection of this number by the header and data of its record; `None` where they do not
@@ -25,7 +26,9 @@ fn holds(type_name: &[u8], md5sum: &[u8]) -> Holds {
     {
         Holds::Temperature
     } else if type_name != imu_message::TYPE_NAME.as_bytes() {
-        Holds::Other
+        let mut poses = PoseMessage::ALL.into_iter();
+        let pose = poses.find(|pose| type_name == pose.type_name().as_bytes());
+        pose.filter(|pose| known(pose.md5sum())).map_or(Holds::Other, Holds::Pose)
     } else if known(imu_message::MD5SUM) {
         Holds::Imu
     } else {

@@ -1,8 +1,8 @@
 //! The message `sensor_msgs/Imu` as ROS 1 puts it on the wire.
 //!
-//! seq u32, stamp (seconds u32, nanoseconds u32), frame_id (length u32 and text), and the doubles of
-//! [`imu_body`], little-endian.
+//! A header ([`stamped`](super::stamped)) and the doubles of [`imu_body`], little-endian.
 
+use super::stamped::{HEADER, header};
 use crate::recording::imu_body;
 
 /// Name of the type.
@@ -13,12 +13,6 @@ pub const MD5SUM: &str = "6a62c6daae103f4ff57a132d6f95cec2";
 
 /// Text of the definition with all that it includes: readers refuse a bag without.
 pub const DEFINITION: &str = include_str!("sensor_msgs_Imu.txt");
-
-/// Bytes of the header before the text of its frame.
-const HEADER: usize = 16;
-
-/// Where in it the length of that text stands.
-pub const FRAME: usize = 12;
 
 /// What is wanted of a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,11 +29,8 @@ impl ImuMessage {
     /// Reads a message; `None` when `bytes` are not one.
     #[inline]
     pub fn parse(bytes: &[u8]) -> Option<Self> {
-        let (header, rest) = bytes.split_first_chunk::<HEADER>()?;
-        let word = |at: usize| header.get(at..at + 4).and_then(|b| b.try_into().ok());
-        let (sec, nsec) = (u32::from_le_bytes(word(4)?), u32::from_le_bytes(word(8)?));
-        let frame = u32::from_le_bytes(word(FRAME)?) as usize;
-        Some(Self::of((sec, nsec), rest.get(frame..)?.try_into().ok()?))
+        let (stamp, body) = header(bytes)?;
+        Some(Self::of(stamp, body.try_into().ok()?))
     }
 
     /// A message with this stamp and these doubles.

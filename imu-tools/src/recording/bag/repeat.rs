@@ -1,7 +1,8 @@
 //! The [`Shape`] of a topic's messages, and where their time and readings stand in it.
 
-use super::imu_message::{FRAME, ImuMessage};
+use super::imu_message::ImuMessage;
 use super::record::prefixed;
+use super::stamped::FRAME;
 use crate::recording::imu_body;
 use crate::recording::shape::Shape;
 use crate::recording::topics::Role;
@@ -21,7 +22,7 @@ impl Repeat {
     /// The shape of `record`, whose header is `header` bytes long; `None` for an uncommon one.
     pub fn of(record: &[u8], header: usize, role: Role) -> Option<Self> {
         let payload = 8 + header;
-        ImuMessage::parse(record.get(payload..)?).filter(|_| !role.temperature)?;
+        ImuMessage::parse(record.get(payload..)?).filter(|_| role.is_imu())?;
         let time = Self::time(record.get(4..4 + header)?)? + 4;
         let frame = payload + FRAME..payload + FRAME + 4;
         let shape = Shape::of(record, &[0..time, time + 8..payload, frame])?;

@@ -1,7 +1,9 @@
 //! From messages to samples, in SI units.
 
 use super::imu_message::ImuMessage;
+use super::pose_message;
 use super::temperature_message::TemperatureMessage;
+use crate::recording::pose_body::PoseMessage;
 use crate::recording::topics::Role;
 use crate::recording::{Block, ForceUnit, RateUnit, ReadOptions, Sample, Temperature};
 
@@ -19,7 +21,8 @@ pub struct Samples {
     malformed: u64,
 }
 
-fn nanoseconds((sec, nsec): (u32, u32)) -> i64 {
+/// A time of a bag on one scale.
+pub fn nanoseconds((sec, nsec): (u32, u32)) -> i64 {
     i64::from(sec) * 1_000_000_000 + i64::from(nsec)
 }
 
@@ -47,6 +50,9 @@ impl Samples {
     ) -> bool {
         if role.temperature {
             return self.temperature(payload, time, to);
+        }
+        if let Some(message) = role.pose {
+            return self.pose(message, payload, time, to);
         }
         let Some(message) = ImuMessage::parse(payload) else { return false };
         self.imu(&message, time, role, to);
@@ -78,6 +84,23 @@ impl Samples {
         true
     }
 
+    fn pose(
+        &mut self,
+        message: PoseMessage,
+        payload: &[u8],
+        time: (u32, u32),
+        to: &mut Block,
+    ) -> bool {
+        let Some(mut pose) = pose_message::parse(message, payload) else { return false };
+        self.messages += 1;
+        self.unstamped += u64::from(pose.stamp_ns == 0);
+        if self.bag_time {
+            pose.stamp_ns = nanoseconds(time);
+        }
+        to.poses.push(pose);
+        true
+    }
+
     /// Counts a message that is none.
     pub fn count_malformed(&mut self) {
         self.malformed += 1;
@@ -101,7 +124,7 @@ impl Samples {
         let mut strange = Vec::new();
         if self.malformed > 0 {
             strange.push(format!(
-                "has {} messages that are not of the type that their topic says",
+                "has {} messages that are not of the type that their topic says: they are left out",
                 self.malformed
             ));
         }

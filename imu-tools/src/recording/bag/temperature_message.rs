@@ -1,7 +1,8 @@
 //! The message `sensor_msgs/Temperature` as ROS 1 puts it on the wire.
 //!
-//! seq u32, stamp (seconds u32, nanoseconds u32), frame_id (length u32 and text), temperature in
-//! degrees Celsius and its variance: two doubles, little-endian.
+//! A header, temperature in degrees Celsius and its variance: two doubles, little-endian.
+
+use super::stamped::header;
 
 /// Name of the type.
 pub const TYPE_NAME: &str = "sensor_msgs/Temperature";
@@ -21,13 +22,9 @@ pub struct TemperatureMessage {
 impl TemperatureMessage {
     /// Reads a message; `None` when `bytes` are not one.
     pub fn parse(bytes: &[u8]) -> Option<Self> {
-        let (header, rest) = bytes.split_first_chunk::<16>()?;
-        let word = |at: usize| header.get(at..at + 4).and_then(|b| b.try_into().ok());
-        let (sec, nsec) = (u32::from_le_bytes(word(4)?), u32::from_le_bytes(word(8)?));
-        let frame = u32::from_le_bytes(word(12)?) as usize;
-        let body: &[u8; 16] = rest.get(frame..)?.try_into().ok()?;
-        let celsius = f64::from_le_bytes(*body.first_chunk()?);
-        Some(Self { stamp: (sec, nsec), celsius })
+        let (stamp, body) = header(bytes)?;
+        let body: &[u8; 16] = body.try_into().ok()?;
+        Some(Self { stamp, celsius: f64::from_le_bytes(*body.first_chunk()?) })
     }
 }
 

@@ -35,7 +35,7 @@ impl Repeat {
         let plain = message.and_then(|message| message.exactly::<{ imu_body::LEN }>());
         let frame = PAYLOAD + cdr::FRAME..PAYLOAD + cdr::FRAME + 4;
         let shape = plain
-            .filter(|_| !role.temperature)
+            .filter(|_| role.is_imu())
             .and_then(|_| Shape::of(record, &[0..SAME, PAYLOAD..PAYLOAD + 2, frame]));
         Some(Self { len: record.len(), role, same, shape })
     }
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
     use crate::recording::ros2::Template;
 
-    const ROLE: Role = Role { number: 3, gyroscope: true, accelerometer: true, temperature: false };
+    const ROLE: Role = Role { gyroscope: true, accelerometer: true, ..Role::of(3) };
 
     fn message(channel: u16, time: u64, payload: &[u8]) -> Vec<u8> {
         let mut bytes = Vec::new();

@@ -36,6 +36,12 @@ impl<'a> Stamped<'a> {
     /// Reads the header.
     #[inline]
     pub fn parse(bytes: &'a [u8]) -> Result<Self, Refusal> {
+        Self::behind(0, bytes)
+    }
+
+    /// Reads the header and passes over this many texts behind it.
+    #[inline]
+    pub fn behind(texts: usize, bytes: &'a [u8]) -> Result<Self, Refusal> {
         let (start, fields) =
             bytes.split_first_chunk::<ENCAPSULATION>().ok_or(Refusal::Malformed)?;
         let [first, second, ..] = *start;
@@ -47,13 +53,20 @@ impl<'a> Stamped<'a> {
             other => return Err(Refusal::Representation(other)),
         };
         let header = fields.first_chunk::<HEADER>().ok_or(Refusal::Malformed)?;
-        let word = |at: usize| {
-            let bytes = header.get(at..at + 4).and_then(|b| b.try_into().ok()).unwrap_or_default();
+        let number = |bytes: [u8; 4]| {
             if big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) }
         };
+        let word = |at: usize| {
+            number(header.get(at..at + 4).and_then(|b| b.try_into().ok()).unwrap_or_default())
+        };
         let (sec, nanosec, frame) = (word(0).cast_signed(), word(4), word(8));
-        let end = (HEADER + frame as usize).next_multiple_of(alignment);
-        let doubles = fields.get(end..).ok_or(Refusal::Malformed)?;
+        let mut end = HEADER + frame as usize;
+        for _ in 0..texts {
+            let length = fields.get(end.next_multiple_of(4)..).and_then(|rest| rest.first_chunk());
+            let length = number(*length.ok_or(Refusal::Malformed)?);
+            end = end.next_multiple_of(4) + 4 + length as usize;
+        }
+        let doubles = fields.get(end.next_multiple_of(alignment)..).ok_or(Refusal::Malformed)?;
         Ok(Self { stamp_ns: nanoseconds(sec, nanosec), big_endian, doubles })
     }
 
@@ -65,10 +78,15 @@ impl<'a> Stamped<'a> {
     /// The doubles, of which there must be `N / 8`; what pads the message behind them is ignored.
     #[inline]
     pub fn doubles<const N: usize>(&self) -> Result<Doubles<'a, N>, Refusal> {
-        match self.doubles.split_first_chunk::<N>() {
-            Some((bytes, rest)) if rest.len() < 8 => {
-                Ok(Doubles { bytes, big_endian: self.big_endian })
-            }
+        self.first(N)
+    }
+
+    /// The first `N / 8` of the doubles, which must be `len` bytes in all; what pads the message behind
+    /// them is ignored.
+    #[inline]
+    pub fn first<const N: usize>(&self, len: usize) -> Result<Doubles<'a, N>, Refusal> {
+        match (self.doubles.first_chunk::<N>(), self.doubles.len().checked_sub(len)) {
+            (Some(bytes), Some(0..8)) => Ok(Doubles { bytes, big_endian: self.big_endian }),
             _ => Err(Refusal::Malformed),
         }
     }

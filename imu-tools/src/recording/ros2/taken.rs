@@ -7,6 +7,7 @@ use ruzstd::decoding::FrameDecoder;
 use super::cdr::{Refusal, Stamped};
 use super::{IMU, ImuMessage, TEMPERATURE};
 use crate::recording::input::LARGEST_PIECE;
+use crate::recording::pose_body::{self, PoseMessage};
 use crate::recording::topics::{Holds, Role};
 use crate::recording::{
     Block, ForceUnit, Note, RateUnit, ReadOptions, Sample, Temperature, zstandard,
@@ -21,6 +22,7 @@ pub fn holds(type_name: &str, encoding: &str) -> Holds {
             "holds an IMU whose messages are encoded as {encoding:?}, where \"cdr\" is expected: \
              record or convert it with ROS 2"
         )),
+        (other, "cdr") => PoseMessage::named(other).map_or(Holds::Other, Holds::Pose),
         _ => Holds::Other,
     }
 }
@@ -89,8 +91,7 @@ impl Taken {
 
     /// Takes a message that is compressed by itself.
     fn packed(&mut self, message: Recorded<'_>, role: Role, to: &mut Block) {
-        /// What an IMU's or thermometer's message may hold at most: a few hundred bytes and the
-        /// name of its frame.
+        /// What a message that we read may hold at most: a few hundred bytes and the names of its frames.
         const LARGEST_MESSAGE: usize = 64 * 1024;
         let mut unpacked = std::mem::take(&mut self.unpacked);
         unpacked.resize(LARGEST_MESSAGE, 0);
@@ -108,6 +109,9 @@ impl Taken {
     fn plain(&mut self, Recorded { time_ns, payload }: Recorded<'_>, role: Role, to: &mut Block) {
         if role.temperature {
             return self.temperature(time_ns, payload, to);
+        }
+        if let Some(message) = role.pose {
+            return self.pose(message, time_ns, payload, to);
         }
         match ImuMessage::parse(payload) {
             Ok(message) => self.imu(&message, time_ns, role, to),
@@ -143,6 +147,18 @@ impl Taken {
         }
     }
 
+    fn pose(&mut self, message: PoseMessage, time_ns: i64, payload: &[u8], to: &mut Block) {
+        let parsed = Stamped::behind(message.texts(), payload)
+            .and_then(|s| Ok((s.stamp_ns, s.first::<{ pose_body::LEN }>(message.len())?)));
+        match parsed {
+            Ok((stamp_ns, doubles)) => {
+                let stamp_ns = self.stamp(stamp_ns, time_ns);
+                to.poses.push(pose_body::read(stamp_ns, |at| doubles.get(at)));
+            }
+            Err(refusal) => self.refused(refusal),
+        }
+    }
+
     /// The stamp that is wanted.
     #[inline]
     fn stamp(&mut self, header: i64, recorder: i64) -> i64 {
@@ -168,7 +184,7 @@ impl Taken {
         let mut notes = Vec::new();
         if self.malformed > 0 {
             notes.push(format!(
-                "{path} has {} messages that are no {IMU} or {TEMPERATURE}: they are left out",
+                "{path} has {} messages that are not of the type that their topic says: they are left out",
                 self.malformed
             ));
         }

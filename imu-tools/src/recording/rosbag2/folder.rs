@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::metadata::{self, Metadata};
 use crate::error::Error;
+use crate::recording::nothing::Nothing;
+use crate::recording::poses::PoseTopic;
 use crate::recording::{self, Block, Note, ReadOptions, Source, Stream, add_streams};
 
 /// Endings of files that hold messages.
@@ -79,6 +81,11 @@ impl FolderReader {
             (topic, "") | ("", topic) => Some(topic.to_owned()),
             (gyroscope, accelerometer) => Some(format!("{gyroscope},{accelerometer}")),
         };
+        if let (Some(PoseTopic::Only), Some(of)) =
+            (&options.poses, source.streams().into_iter().find(|stream| stream.used))
+        {
+            options.poses = Some(PoseTopic::Named(of.name));
+        }
         Ok(Self {
             folder: folder.to_owned(),
             options,
@@ -198,40 +205,6 @@ fn length(file: &Path, folder: &Path) -> Result<u64, Error> {
             folder.join(metadata::NAME).display()
         ))),
         Err(error) => Err(Error::io("read", file, error)),
-    }
-}
-
-/// A file of which nothing can be read.
-struct Nothing;
-
-impl Source for Nothing {
-    fn next_block(&mut self, block: &mut Block) -> Result<bool, Error> {
-        block.clear();
-        Ok(false)
-    }
-
-    fn streams(&self) -> Vec<Stream> {
-        Vec::new()
-    }
-
-    fn gyroscope(&self) -> &str {
-        ""
-    }
-
-    fn accelerometer(&self) -> &str {
-        ""
-    }
-
-    fn take_notes(&mut self) -> Vec<Note> {
-        Vec::new()
-    }
-
-    fn bytes_read(&self) -> u64 {
-        0
-    }
-
-    fn bytes_total(&self) -> Option<u64> {
-        Some(0)
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::collections::HashSet;
 
+use crate::recording::pose_body::PoseMessage;
+
 /// Topics listed in an error, at most.
 const LISTED: usize = 40;
 
@@ -17,6 +19,8 @@ pub enum Holds {
     Temperature,
     /// Readings of an IMU that cannot be read, and why: a whole sentence without its beginning.
     Unreadable(String),
+    /// Where a body is, in a layout that we know.
+    Pose(PoseMessage),
     /// Something else.
     Other,
 }

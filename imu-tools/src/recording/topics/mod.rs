@@ -3,14 +3,18 @@
 //!
 //! A reader describes every connection that it finds ([`Topics::add`]), has the choice made
 //! ([`Topics::choose`]) whenever one is new, and takes from a message what the [`Role`] of its
-//! connection wants. A thermometer is taken along where there is exactly one.
+//! connection wants. A thermometer is taken along where there is exactly one. Who wants poses gets those
+//! of one topic (`poses`), and nothing else.
 
 mod connections;
+mod poses;
 mod wanted;
 mod words;
 
 use std::path::Path;
 
+use super::pose_body::PoseMessage;
+use super::poses::PoseTopic;
 use super::{Note, ReadOptions, Stream};
 use crate::error::Error;
 use connections::{Connections, same};
@@ -30,12 +34,28 @@ pub struct Role {
     pub accelerometer: bool,
     /// It is the thermometer's, and nothing else.
     pub temperature: bool,
+    /// Its poses are wanted, and nothing else.
+    pub pose: Option<PoseMessage>,
+}
+
+impl Role {
+    /// None yet.
+    pub const fn of(number: u32) -> Self {
+        Self { number, gyroscope: false, accelerometer: false, temperature: false, pose: None }
+    }
+
+    /// Whether readings of an IMU are wanted.
+    pub fn is_imu(&self) -> bool {
+        self.gyroscope || self.accelerometer
+    }
 }
 
 /// What was asked for, what there is, and what is taken.
 #[derive(Clone, Debug)]
 pub struct Topics {
     asked: Option<Wanted>,
+    /// Poses are wanted, and no IMU.
+    wanted_poses: Option<PoseTopic>,
     /// Of several IMUs the first is taken.
     survey: bool,
     connections: Connections,
@@ -47,6 +67,8 @@ pub struct Topics {
     pub gyroscope: String,
     /// Where specific forces are found.
     pub accelerometer: String,
+    /// Where poses are found.
+    poses: String,
 }
 
 impl Topics {
@@ -54,6 +76,7 @@ impl Topics {
     pub fn new(options: &ReadOptions) -> Self {
         Self {
             asked: options.topic.as_deref().map(Wanted::asked),
+            wanted_poses: options.poses.clone(),
             survey: options.survey,
             connections: Connections::default(),
             roles: Vec::new(),
@@ -61,6 +84,7 @@ impl Topics {
             told: false,
             gyroscope: String::new(),
             accelerometer: String::new(),
+            poses: String::new(),
         }
     }
 
@@ -70,10 +94,11 @@ impl Topics {
         self.roles.iter().copied().find(|role| role.number == number)
     }
 
-    /// Whether all that was asked for was found, or, if nothing was, an IMU.
+    /// Whether all that was asked for was found, or, if nothing was, an IMU. There may be no poses.
     pub fn complete(&self) -> bool {
         let found = |wanted: &Option<String>, topic: &str| wanted.is_none() || !topic.is_empty();
         match &self.asked {
+            _ if self.wanted_poses == Some(PoseTopic::Only) => true,
             None => self.any(),
             Some(asked) => {
                 found(&asked.gyroscope, &self.gyroscope)
@@ -82,9 +107,14 @@ impl Topics {
         }
     }
 
-    /// Whether the topic of a sensor was found.
+    /// Whether the topic of a sensor was found, or that of the poses.
     pub fn any(&self) -> bool {
-        !self.gyroscope.is_empty() || !self.accelerometer.is_empty()
+        !self.gyroscope.is_empty() || !self.accelerometer.is_empty() || !self.poses.is_empty()
+    }
+
+    /// Whether there is nothing to read, where all topics are known (`listed`) or all was looked through.
+    pub fn lack(&self, listed: bool) -> bool {
+        !self.complete() && (listed || !self.any())
     }
 
     /// Whether the recording described this connection.
@@ -130,16 +160,21 @@ impl Topics {
     /// none.
     pub fn choose(&mut self, path: &Path) -> Result<(), Error> {
         let mut notes = Vec::new();
-        let wanted = match &self.asked {
-            Some(asked) => Some(asked.clone()),
-            None => self.find(path, &mut notes)?,
-        };
-        self.roles.clear();
-        if let Some(wanted) = &wanted {
-            self.take_sensors(wanted, path)?;
-            notes.extend(self.half(wanted, path));
+        if let Some(wanted) = self.wanted_poses.clone() {
+            self.roles.clear();
+            self.take_poses(&wanted, path, &mut notes)?;
+        } else {
+            let wanted = match &self.asked {
+                Some(asked) => Some(asked.clone()),
+                None => self.find(path, &mut notes)?,
+            };
+            self.roles.clear();
+            if let Some(wanted) = &wanted {
+                self.take_sensors(wanted, path)?;
+                notes.extend(self.half(wanted, path));
+            }
+            self.take_thermometer(path, &mut notes);
         }
-        self.take_thermometer(path, &mut notes);
         if self.notes != notes {
             (self.notes, self.told) = (notes, false);
         }
@@ -215,7 +250,7 @@ impl Topics {
             if accelerometer {
                 self.accelerometer.clone_from(topic);
             }
-            roles.push(Role { number: *number, gyroscope, accelerometer, temperature: false });
+            roles.push(Role { gyroscope, accelerometer, ..Role::of(*number) });
         }
         Ok(())
     }
@@ -231,12 +266,7 @@ impl Topics {
             )));
             return;
         }
-        let of = |c: &Connection| Role {
-            number: c.number,
-            gyroscope: false,
-            accelerometer: false,
-            temperature: true,
-        };
+        let of = |c: &Connection| Role { temperature: true, ..Role::of(c.number) };
         self.roles.extend(self.connections.iter().filter(|c| thermometer(c)).map(of));
     }
 
@@ -273,6 +303,9 @@ impl Topics {
             return Error::data(format!("{path} holds no messages"));
         }
         let all = self.connections.list(|_| true);
+        if let Some(PoseTopic::Named(topic)) = &self.wanted_poses {
+            return Error::usage(format!("{path} has no topic {topic}; it has {all}"));
+        }
         match &self.asked {
             None => Error::data(format!(
                 "{path} has no topic of an IMU (type sensor_msgs/Imu); it has {all}"
@@ -294,7 +327,7 @@ fn check(connection: &Connection, path: &Path) -> Result<(), Error> {
     match &connection.holds {
         Holds::Imu => Ok(()),
         Holds::Unreadable(why) => Err(Error::data(format!("topic {topic} of {path} {why}"))),
-        Holds::Temperature | Holds::Other => Err(Error::usage(format!(
+        Holds::Temperature | Holds::Pose(_) | Holds::Other => Err(Error::usage(format!(
             "topic {topic} of {path} holds {type_name}, not sensor_msgs/Imu: choose another one"
         ))),
     }

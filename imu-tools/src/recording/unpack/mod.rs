@@ -200,7 +200,7 @@ impl Source for Unpacked {
             // Between damage and its discovery there may be nonsense, at which the reader stops.
             Err(Error::Data(_)) if self.layers.damage_to_the_end().is_some() => {
                 self.ended = true;
-                Ok(!block.gyroscope.is_empty() || !block.accelerometer.is_empty())
+                Ok(!block.is_empty())
             }
             other => other,
         }

@@ -106,7 +106,7 @@ impl BagReader {
         while !bag.listed && !bag.topics.any() && bag.record(&mut ahead)? {
             ahead.clear();
         }
-        if !bag.topics.any() || (bag.listed && !bag.topics.complete()) {
+        if bag.topics.lack(bag.listed) {
             return Err(bag.topics.not_found(bag.bytes.input().path()));
         }
         Ok(bag)

@@ -93,7 +93,7 @@ impl McapReader {
         while !mcap.listed && !mcap.topics.any() && mcap.record(&mut ahead)? {
             ahead.clear();
         }
-        if !mcap.topics.any() || (mcap.listed && !mcap.topics.complete()) {
+        if mcap.topics.lack(mcap.listed) {
             return Err(mcap.topics.not_found(mcap.input.path()));
         }
         Ok(mcap)

@@ -1,4 +1,4 @@
-//! Trajectories: poses over time, as TUM and EuRoC write them. They hold no IMU samples.
+//! Tables of poses, as TUM, EuRoC and `imu simulate` write them.
 //!
 //! TUM's: `timestamp tx ty tz qx qy qz qw`, blanks between, time in seconds, lines with `#` passed
 //! over (Sturm et al. 2012). EuRoC's ground truth: a table whose header names `p_RS_R_x` … and
@@ -6,34 +6,20 @@
 //! `imu simulate` is such a table too; where its clock errs, rows have the stamp of the recording, and those of lost
 //! samples are passed over.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::csv::dialect::Dialect;
-use super::csv::number;
-use super::input::{Input, LARGEST_PIECE};
-use super::unpack;
+use super::Pose;
 use crate::error::Error;
+use crate::recording::csv::dialect::Dialect;
+use crate::recording::csv::number;
+use crate::recording::input::{Input, LARGEST_PIECE};
+use crate::recording::unpack;
 
 /// So much of the start is looked at.
 const AHEAD: usize = 64 * 1024;
 
-/// Where a body is and how it is turned.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// Nanoseconds since the epoch of the recording's clock.
-    pub stamp_ns: i64,
-    /// Metres, in the world's axes.
-    pub position: [f64; 3],
-    /// The rotation from body to world as a quaternion x, y, z, w.
-    pub orientation: [f64; 4],
-    /// Metres a second, in the world's axes, where the table has it.
-    pub velocity: Option<[f64; 3]>,
-    /// What gyroscope (rad/s) and accelerometer (m/s²) read too much, where the table has it.
-    pub bias: Option<([f64; 3], [f64; 3])>,
-}
-
-/// A trajectory being read, front to back.
-pub struct Poses {
+/// A table of poses being read, front to back.
+pub struct Table {
     input: Input,
     format: Format,
     line: u64,
@@ -150,7 +136,7 @@ impl Format {
     }
 }
 
-impl Poses {
+impl Table {
     /// Opens the trajectory at `path`; `-` is a pipe.
     ///
     /// # Errors
@@ -160,13 +146,13 @@ impl Poses {
     }
 
     /// Whether a file begins as a trajectory does.
-    pub(super) fn are_in(input: &mut Input) -> Result<bool, Error> {
+    pub fn are_in(input: &mut Input) -> Result<bool, Error> {
         input.fill(AHEAD)?;
         Ok(Format::of(input.at_hand()).is_some_and(|format| !format.imu))
     }
 
     /// Reads the trajectory in `input`.
-    pub(super) fn of(mut input: Input) -> Result<Self, Error> {
+    pub fn of(mut input: Input) -> Result<Self, Error> {
         input.fill(AHEAD)?;
         let format = Format::of(input.at_hand()).ok_or_else(|| {
             Error::data(format!(
@@ -226,7 +212,7 @@ impl Poses {
     }
 
     /// The error for who looks for an IMU here.
-    pub(super) fn no_samples(mut self) -> Error {
+    pub fn no_samples(mut self) -> Error {
         let mut poses = 0_u64;
         while matches!(self.next_pose(), Ok(Some(_))) {
             poses += 1;
@@ -238,27 +224,13 @@ impl Poses {
     }
 }
 
-/// The truth that stands beside a recording: `NAME.truth.csv` or `NAME.truth.tum` beside `NAME.bag` and the like, EuRoC's
-/// and TUM-VI's folders of ground truth beside the IMU's.
-#[must_use]
-pub fn beside(recording: &Path) -> Option<PathBuf> {
-    const FOLDERS: [&str; 2] = ["state_groundtruth_estimate0", "mocap0"];
-    let named = ["truth.csv", "truth.tum"].map(|ending| recording.with_extension(ending));
-    let is_euroc = recording.is_dir() || recording.file_name().is_some_and(|n| n == "data.csv");
-    let inside = [recording.join("mav0"), recording.to_owned()];
-    let around = recording.ancestors().skip(1).take(2).map(Path::to_owned);
-    let folders = inside.into_iter().chain(around).filter(|_| is_euroc);
-    let truths = folders.flat_map(|at| FOLDERS.map(|folder| at.join(folder).join("data.csv")));
-    named.into_iter().chain(truths).find(|path| path.is_file() && path != recording)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn poses(text: &str) -> Result<Vec<Pose>, Error> {
         let stream = Box::new(std::io::Cursor::new(text.as_bytes().to_vec()));
-        let mut poses = Poses::of(Input::pipe(Path::new("a"), stream))?;
+        let mut poses = Table::of(Input::pipe(Path::new("a"), stream))?;
         let mut all = Vec::new();
         while let Some(pose) = poses.next_pose()? {
             all.push(pose);
@@ -306,7 +278,7 @@ mod tests {
              9,,1,2,3,1,0,0,0,4,5,6,0,0,0,0,0,9.8,.1,.2,.3,.4,.5,.6\n";
         assert_eq!(poses(own).unwrap(), [Pose { stamp_ns: 8, ..pose }]);
         let stream = Box::new(std::io::Cursor::new(own.as_bytes().to_vec()));
-        assert!(!Poses::are_in(&mut Input::pipe(Path::new("a"), stream)).unwrap());
+        assert!(!Table::are_in(&mut Input::pipe(Path::new("a"), stream)).unwrap());
     }
 
     #[test]
