@@ -100,8 +100,33 @@ fn what_a_sample_is_matters_more_than_the_rule() {
     assert!(number(&two, "position_rmse_m") < 1e-8, "{two}");
     assert!(number(&two, "rotation_rmse_deg") < 1e-9, "{two}");
     assert!(number(&one, "position_rmse_m") < 1e-4, "{one}");
-    let wrong = ellipse.errors("a.csv", &AT, "three-sample");
+    // Its header says what they are, so that it has to be passed over.
+    let columns = [&AT[..], &["--columns", "t,gx,gy,gz,ax,ay,az", "--time-unit", "ns"]].concat();
+    let wrong = ellipse.errors("a.csv", &columns, "three-sample");
     assert!(number(&wrong, "position_rmse_m") > 0.1, "{wrong}");
+}
+
+/// Headers as `imu simulate` writes them; `--columns` passes over a header that is wrong.
+#[test]
+fn a_header_that_says_what_samples_are_is_believed() {
+    let means = Ellipse::new("mean");
+    let refused = |ellipse: &Ellipse, arguments: &[&str], code: i32, sentence: &str| {
+        let said = ellipse.integrate("a.csv", arguments);
+        assert_eq!((said.code, said.err.lines().count()), (code, 1), "{}", said.err);
+        assert!(said.err.contains(sentence), "{}", said.err);
+    };
+    refused(&means, &AT, 2, "by its header they are means: take --samples mean");
+    assert_eq!(means.integrate("a.csv", &["--samples", "mean"]).code, 0);
+    let columns = ["--columns", "t,gx,gy,gz,ax,ay,az", "--time-unit", "ns"];
+    assert_eq!(means.integrate("a.csv", &[&AT[..], &columns].concat()).code, 0);
+    let increments = Ellipse::new("increments");
+    let sentence = "holds increments by its header (delta_angle_x [rad])";
+    refused(&increments, &["--samples", "mean"], 1, sentence);
+    let map = "t=timestamp,gx=delta_angle_x,gy=delta_angle_y,gz=delta_angle_z,ax=delta_velocity_x,\
+               ay=delta_velocity_y,az=delta_velocity_z";
+    let units = ["--samples", "mean", "--gyro-unit", "rad/s", "--accel-unit", "m/s^2"];
+    let sentence = "by its header they are increments: divide them by the time between samples";
+    refused(&increments, &[&units[..], &["--map", map]].concat(), 2, sentence);
 }
 
 #[test]

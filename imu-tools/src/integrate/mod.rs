@@ -208,7 +208,8 @@ pub struct PathPoint {
 /// their places when they are finished.
 ///
 /// # Errors
-/// What source and truth say; no samples of both sensors; a start that is not at rest, or of which the truth knows nothing; a truth where one is needed; nothing that
+/// What source and truth say; samples of another kind than the recording says that they are; no samples of both
+/// sensors; a start that is not at rest, or of which the truth knows nothing; a truth where one is needed; nothing that
 /// could be integrated.
 pub fn integrate(
     source: Box<dyn Source>,
@@ -217,6 +218,10 @@ pub fn integrate(
     options: &Options,
     mut progress: impl FnMut(u64),
 ) -> Result<(Integration, Vec<Output>), Error> {
+    if let Some(why) = source.samples().and_then(|told| said::other_kind(path, options.kind, told))
+    {
+        return Err(Error::usage(why));
+    }
     let mut run = Run::new(path, against, options)?;
     let mut source = read_ahead(source, |block, at| {
         progress(at.bytes);

@@ -3,8 +3,9 @@
 use super::pairs::HOLE;
 use super::rest;
 use super::run::Run;
-use super::{GravityFrom, KnownBias, Start};
+use super::{GravityFrom, Kind, KnownBias, Start};
 use crate::calibrate::gravity;
+use crate::recording::SampleKind;
 use crate::scene::display_duration;
 
 /// A hole, and what was done about it.
@@ -20,6 +21,29 @@ pub(super) fn hole(at_s: f64, long_s: f64, crossed: bool, has_truth: bool) -> St
             format!("{what}: it ends there; integrate the rest by itself, with --from")
         }
     }
+}
+
+/// What is wrong with samples that are said to be of one kind, and of which the recording tells another.
+pub(super) fn other_kind(path: &str, said: Kind, told: SampleKind) -> Option<String> {
+    let mend = match (told, said) {
+        (SampleKind::Instantaneous, Kind::Instantaneous) | (SampleKind::Mean, Kind::Mean) => {
+            return None;
+        }
+        (SampleKind::Instantaneous, Kind::Mean) => "take --samples instantaneous",
+        (SampleKind::Mean, Kind::Instantaneous) => "take --samples mean",
+        (SampleKind::Increments, _) => {
+            "divide them by the time between samples, and take --samples mean"
+        }
+    };
+    Some(format!(
+        "the samples of {path} are said to be {said}, and by its header they are {}: {mend}, or --columns if \
+         the header is wrong",
+        match told {
+            SampleKind::Instantaneous => "instantaneous",
+            SampleKind::Mean => "means",
+            SampleKind::Increments => "increments",
+        }
+    ))
 }
 
 /// Why nothing was integrated.

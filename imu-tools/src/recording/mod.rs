@@ -182,6 +182,11 @@ pub trait Source: Send {
     /// Takes what there is to tell since the last call; complete once the end was reached.
     fn take_notes(&mut self) -> Vec<Note>;
 
+    /// What the recording says that its samples are, where it does.
+    fn samples(&self) -> Option<SampleKind> {
+        None
+    }
+
     /// Bytes read so far.
     fn bytes_read(&self) -> u64;
 

@@ -1,6 +1,6 @@
 //! A reader with something more to tell.
 
-use super::{Block, Note, Source, Stream};
+use super::{Block, Note, SampleKind, Source, Stream};
 use crate::error::Error;
 
 /// Tells `notes` with those of `source`.
@@ -37,6 +37,10 @@ impl Source for Noted {
         let mut notes = std::mem::take(&mut self.notes);
         notes.extend(self.source.take_notes());
         notes
+    }
+
+    fn samples(&self) -> Option<SampleKind> {
+        self.source.samples()
     }
 
     fn bytes_read(&self) -> u64 {

@@ -2,6 +2,7 @@
 
 use super::columns::Column;
 use super::names::Name;
+use crate::recording::SampleKind;
 use crate::recording::sensor::Sensor;
 
 /// Names shown in a sentence, at most.
@@ -33,6 +34,15 @@ pub fn several_imus(names: &[&[u8]], hint: Option<Sensor>) -> Option<String> {
     (rates || forces).then(|| listed(&found, SHOWN))
 }
 
+/// What the names of the columns that are taken say of the samples; of two things, the one that can be taken
+/// for readings the least.
+pub fn samples(names: &[&[u8]], columns: &[Column]) -> Option<SampleKind> {
+    let reading = |column: &Column| matches!(column, Column::Rate(_) | Column::Force(_));
+    let taken = names.iter().zip(columns).filter(|(_, column)| reading(column));
+    let told: Vec<SampleKind> = taken.filter_map(|(text, _)| Name::new(text).samples()).collect();
+    [SampleKind::Increments, SampleKind::Mean].into_iter().find(|kind| told.contains(kind))
+}
+
 /// The columns that are not taken, by their names where they have any; empty where there are none.
 /// `row` is the first one.
 pub fn not_taken(names: &[&[u8]], columns: &[Column], row: &[&[u8]]) -> String {
@@ -58,7 +68,7 @@ fn is_about_readings(text: &[u8]) -> bool {
 }
 
 /// A column's name as a sentence shows it.
-fn name(text: &[u8]) -> String {
+pub fn name(text: &[u8]) -> String {
     String::from_utf8_lossy(text).trim().to_owned()
 }
 

@@ -6,10 +6,11 @@ use super::celsius::Celsius;
 use super::columns::{Column, Columns};
 use super::dialect::{Dialect, Separator, pointed};
 use super::granted::Granted;
+use super::names::Name;
 use super::{beside, date, number};
 use crate::error::Error;
 use crate::recording::sensor::Sensor;
-use crate::recording::{Note, ReadOptions};
+use crate::recording::{Note, ReadOptions, SampleKind};
 
 /// How to read the rows of a table.
 pub struct Layout {
@@ -31,6 +32,8 @@ pub struct Layout {
     pub lines_before: u64,
     /// Bytes before it.
     pub bytes_before: usize,
+    /// What the header says of the samples; nothing where the user says what the columns are.
+    pub samples: Option<SampleKind>,
     /// Names of columns that are not taken; empty where there are none.
     pub not_taken: String,
     /// What was taken for granted.
@@ -198,6 +201,10 @@ impl Layout {
             celsius: found.celsius,
             lines_before: start.lines_before,
             bytes_before: start.bytes_before,
+            samples: match options.columns {
+                Some(_) => None,
+                None => beside::samples(&names, &found.columns),
+            },
             not_taken: beside::not_taken(&names, &found.columns, &fields),
             notes: several.into_iter().collect(),
         };
@@ -252,6 +259,16 @@ fn columns(
     }
     if let Some(found) = from_headers(start, dialect, sensor_by_name(path)) {
         return found.map_err(|what| {
+            let names = start.names(dialect, width);
+            let of = |name: &&&[u8]| Name::new(name).samples() == Some(SampleKind::Increments);
+            if let Some(increment) = names.iter().find(of) {
+                return Error::data(format!(
+                    "{} holds increments by its header ({}), where angular rates and specific forces are \
+                     wanted: divide them by the time between samples",
+                    path.display(),
+                    beside::name(increment)
+                ));
+            }
             Error::data(format!(
                 "in the header of {} {what}: name its columns with --map t=NAME,gx=NAME,… or \
                  --columns t,gx,gy,gz,ax,ay,az",

@@ -2,7 +2,7 @@
 
 use super::columns::Column;
 use crate::recording::sensor::Sensor;
-use crate::recording::{ForceUnit, RateUnit, TimeUnit};
+use crate::recording::{ForceUnit, RateUnit, SampleKind, TimeUnit};
 
 /// A column's name in parts.
 pub struct Name {
@@ -46,6 +46,10 @@ const ACCELEROMETER: [&str; 9] = [
     "force",
     "specificforce",
 ];
+
+/// Words of columns that hold means over an interval, and increments over it.
+const MEANS: [&str; 4] = ["mean", "avg", "average", "averaged"];
+const INCREMENTS: [&str; 3] = ["delta", "increment", "increments"];
 
 /// Words of columns that hold something else about a sensor.
 const FOREIGN: [&str; 14] = [
@@ -193,6 +197,15 @@ impl Name {
             (false, true) => Column::Force(axis),
             _ => Column::Other,
         }
+    }
+
+    /// What its samples are, where it says so.
+    pub fn samples(&self) -> Option<SampleKind> {
+        let word = |list: &[&str]| self.words.iter().any(|w| list.contains(&w.as_str()));
+        if word(&INCREMENTS) {
+            return Some(SampleKind::Increments);
+        }
+        word(&MEANS).then_some(SampleKind::Mean)
     }
 
     /// The half of a time in two columns that this is by its name, if there is another half.

@@ -5,7 +5,7 @@ use super::layout::{Layout, is_aside};
 use super::row::{self, Fault};
 use crate::error::Error;
 use crate::recording::input::{Input, LARGEST_PIECE};
-use crate::recording::{Block, Note, ReadOptions, Source, Stream, TABLE};
+use crate::recording::{Block, Note, ReadOptions, SampleKind, Source, Stream, TABLE};
 
 /// So much of the start is looked at to understand the table.
 const AHEAD: usize = 64 * 1024;
@@ -152,6 +152,10 @@ impl Source for CsvReader {
 
     fn take_notes(&mut self) -> Vec<Note> {
         std::mem::take(&mut self.layout.notes)
+    }
+
+    fn samples(&self) -> Option<SampleKind> {
+        self.layout.samples
     }
 
     fn bytes_read(&self) -> u64 {

@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::input::Input;
-use super::{Block, Note, Source, Stream, zstandard};
+use super::{Block, Note, SampleKind, Source, Stream, zstandard};
 use crate::error::Error;
 
 /// So many wrappings in each other are enough for anything but an attack.
@@ -227,6 +227,10 @@ impl Source for Unpacked {
             notes.push(Note::Warning(damage));
         }
         notes
+    }
+
+    fn samples(&self) -> Option<SampleKind> {
+        self.source.samples()
     }
 
     fn bytes_read(&self) -> u64 {
