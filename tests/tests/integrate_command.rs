@@ -4,7 +4,11 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use imu_core::nalgebra::Vector3;
+use imu_core::so3;
+use imu_core::world::RotatingEarth;
 use imu_tests::command::{Said, run};
+use imu_tests::recordings::Folder;
 use imu_tools::recording::poses::Poses;
 use serde_json::Value;
 
@@ -244,6 +248,58 @@ fn what_cannot_be_asked_is_refused_with_a_sentence() {
         assert_eq!(said.code, code, "{arguments:?}: {}", said.err);
         assert!(said.err.contains(sentence), "{arguments:?}: {}", said.err);
         assert_eq!((said.out.as_str(), said.err.lines().count()), ("", 1), "{arguments:?}");
+    }
+}
+
+/// A sensor at rest at 46° N, in some attitude: it feels RᵀΩ and −Rᵀg.
+#[test]
+fn on_the_turning_earth_a_sensor_at_rest_stays() {
+    let (degrees, height) = (46.0_f64, 1200.0);
+    let earth = RotatingEarth::<f64>::new(degrees.to_radians(), height).expect("a place");
+    let attitude = so3::exp(Vector3::new(0.4, -0.7, 1.1));
+    let body = |v: Vector3<f64>| so3::rotate(&so3::inverse(&attitude), &v);
+    let (rate, force) = (body(earth.rate()), body(-earth.gravity()));
+    let (mut csv, mut tum) = (String::from("t [s],gx,gy,gz,ax,ay,az\n"), String::new());
+    for k in 0..=6000 {
+        let t = f64::from(k) / 100.0;
+        let [gx, gy, gz, ax, ay, az] = [rate.x, rate.y, rate.z, force.x, force.y, force.z];
+        writeln!(csv, "{t},{gx},{gy},{gz},{ax},{ay},{az}").expect("memory");
+        let q = attitude;
+        writeln!(tum, "{t} 0 0 0 {} {} {} {}", q.i, q.j, q.k, q.w).expect("memory");
+    }
+    let folder = Folder::new();
+    let (file, truth) = (folder.put("a.csv", csv), folder.put("true.tum", tum));
+    let errors = |samples: &str, place: &[&str]| -> Vec<(bool, f64)> {
+        let call = ["integrate", &file, "--samples", samples, "--truth", &truth, "--json"];
+        let said = run(&[&call[..], place].concat());
+        assert_eq!(said.code, 0, "{}", said.err);
+        let json: Value = serde_json::from_str(&said.out).expect("JSON");
+        let rules = json["rules"].as_array().expect("a list");
+        let is_euler = |rule: &Value| rule["rule"].as_str().expect("a name").contains("euler");
+        let error = |rule| (is_euler(rule), number(&rule["errors"], "position_final_m"));
+        rules.iter().map(error).collect()
+    };
+    let north = earth.rate().y;
+    let gravity = -earth.gravity().z;
+    for samples in ["instantaneous", "mean"] {
+        let here = errors(samples, &["--latitude", "46", "--height", "1200"]);
+        // Euler's rule takes the force in the attitude before the step: tilted by Ω cos φ h/2, 4.5 mm in a minute.
+        let tilt = gravity * north * (0.01 / 2.0) * 60.0 * 60.0 / 2.0;
+        let most = |euler: bool| if euler { 1e-3_f64.max(1.01 * tilt) } else { 1e-3 };
+        assert!(here.iter().all(|(euler, metres)| *metres < most(*euler)), "{here:?} {tilt}");
+        // On the ellipsoid gravity is larger by 2gh/a(1 + f + m − 2f sin²) = 3.70e-3 m/s², and it falls: gt²/2.
+        let below = RotatingEarth::<f64>::new(degrees.to_radians(), 0.0).expect("a place");
+        let fall = (earth.gravity().z - below.gravity().z) * 60.0 * 60.0 / 2.0;
+        let low = errors(samples, &["--latitude", "46"]);
+        assert!(low.iter().all(|(_, metres)| (metres / fall - 1.0).abs() < 0.01), "{low:?} {fall}");
+        // Where the world does not turn, the rate tilts the force by Ω cos φ · t to the east: g Ω cos φ t³/6, and the
+        // next orders are smaller by Ωt = 0.4 %.
+        let east = gravity * north * 60.0_f64.powi(3) / 6.0;
+        let flat = errors(samples, &["--gravity", &gravity.to_string()]);
+        assert!(
+            flat.iter().all(|(_, metres)| (metres / east - 1.0).abs() < 0.01),
+            "{flat:?} {east}"
+        );
     }
 }
 
