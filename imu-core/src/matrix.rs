@@ -58,6 +58,22 @@ pub(crate) fn add_scaled<T: Real>(a: &Rows<T>, k: T, b: &Rows<T>) -> Rows<T> {
     [a[0] + b[0] * k, a[1] + b[1] * k, a[2] + b[2] * k]
 }
 
+/// 1
+pub(crate) fn identity<T: Real>() -> Rows<T> {
+    let (one, zero) = (T::ONE, T::ZERO);
+    [Vector3::new(one, zero, zero), Vector3::new(zero, one, zero), Vector3::new(zero, zero, one)]
+}
+
+/// a b
+pub(crate) fn product<T: Real>(a: &Rows<T>, b: &Rows<T>) -> Rows<T> {
+    a.map(|row| b[0] * row.x + b[1] * row.y + b[2] * row.z)
+}
+
+/// m v
+pub(crate) fn rows_times<T: Real>(m: &Rows<T>, v: &Vector3<T>) -> Vector3<T> {
+    Vector3::new(dot(&m[0], v), dot(&m[1], v), dot(&m[2], v))
+}
+
 /// aᵀ b
 pub(crate) fn transposed_times<T: Real>(a: &Rows<T>, b: &Rows<T>) -> Rows<T> {
     let row = |x: T, y: T, z: T| b[0] * x + b[1] * y + b[2] * z;

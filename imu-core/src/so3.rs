@@ -20,6 +20,13 @@
 //! assert!((so3::log(&q_wb).z - core::f64::consts::FRAC_PI_2).abs() < 1e-15);
 //! ```
 
+mod jacobians;
+mod unit_log;
+
+pub(crate) use jacobians::{coefficients, inverse_left_rows, left_rows, series};
+pub use jacobians::{inverse_left_jacobian, inverse_right_jacobian, left_jacobian, right_jacobian};
+pub(crate) use unit_log::log_of_unit;
+
 use crate::Real;
 use crate::vector::{cross, dot};
 use nalgebra::{Quaternion, Vector3};
@@ -42,6 +49,13 @@ pub fn exp<T: Real>(rotation: Vector3<T>) -> Quaternion<T> {
 #[inline(always)]
 pub(crate) fn exp_of_half<T: Real>(half: Vector3<T>) -> Quaternion<T> {
     let square = dot(&half, &half);
+    let (cos, sinc) = if square < T::from_f64(SMALL) { small(square) } else { large(square) };
+    Quaternion::new(cos, half.x * sinc, half.y * sinc, half.z * sinc)
+}
+
+/// The same of a half vector whose square is known.
+#[inline(always)]
+pub(crate) fn exp_of_squared_half<T: Real>(half: Vector3<T>, square: T) -> Quaternion<T> {
     let (cos, sinc) = if square < T::from_f64(SMALL) { small(square) } else { large(square) };
     Quaternion::new(cos, half.x * sinc, half.y * sinc, half.z * sinc)
 }

@@ -192,3 +192,19 @@ fn small_differences_keep_their_digits() {
         assert!((there - exactly).abs().max() <= if small { 3.6e-7 * size } else { 1e-6 });
     }
 }
+
+/// log(exp(d)) = d to 4 units in the last place of |d|, from 1e-300 to π − 1e-9.
+#[test]
+fn the_way_there_and_back_keeps_the_last_digits() {
+    let ulp = |x: f64| f64::from_bits(x.to_bits() + 1) - x;
+    for (k, axis) in rotations(1.0).skip(1).enumerate() {
+        let exponent = -300.0 * (k as f64 * 0.618_034).fract();
+        let near = PI - 10_f64.powf(-9.0 * (k as f64 * 0.414_214).fract());
+        let even = (PI - 1e-9) * (k as f64 * 0.732_051).fract();
+        for angle in [3.0 * 10_f64.powf(exponent), near, even, PI - 1e-9] {
+            let d = axis * (angle / norm(axis));
+            let off = norm(log(&exp(d)) - d);
+            assert!(off <= 4.0 * ulp(angle), "{angle:e}: {} ulp", off / ulp(angle));
+        }
+    }
+}

@@ -34,3 +34,8 @@ pub(crate) fn two_crosses<T: Real>(
 pub(crate) fn within<T: Real>(v: &Vector3<T>, limit: T) -> bool {
     v.x.abs() <= limit && v.y.abs() <= limit && v.z.abs() <= limit
 }
+
+#[cfg(test)]
+pub(crate) fn norm<T: Real>(v: &Vector3<T>) -> T {
+    dot(v, v).sqrt()
+}

@@ -11,9 +11,11 @@
 //! assert!((motion.specific_force.z - 9.760_991).abs() < 1e-6);
 //! ```
 
+mod along_spline;
 mod ellipse;
 mod rest;
 
+pub use along_spline::AlongSpline;
 pub use ellipse::Ellipse;
 pub use rest::Rest;
 
@@ -54,8 +56,14 @@ impl Motion<f64> {
     }
 }
 
-/// A motion known in closed form.
+/// A motion known at every instant of its span, with its derivatives.
 pub trait Trajectory<T: Real> {
+    /// The first and the last instant at which it is known, ns; all there are, if not told otherwise. Outside of it
+    /// every number of [`at`](Self::at) and [`kinematics`](Self::kinematics) is NaN.
+    fn span(&self) -> (i64, i64) {
+        (i64::MIN, i64::MAX)
+    }
+
     /// The motion `t_ns` nanoseconds after the trajectory's own beginning (negative: before it).
     ///
     /// Computed in double precision from the integer time and rounded once to `T`: so an `f32`
