@@ -9,4 +9,5 @@ pub mod mcaps;
 pub mod monte_carlo;
 pub mod recordings;
 pub mod term_records;
+pub mod ulog_outcomes;
 pub mod ulogs;
