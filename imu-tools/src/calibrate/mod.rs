@@ -26,6 +26,7 @@ pub mod filter;
 mod fits;
 pub mod five_terms;
 pub(crate) mod gravity;
+mod held;
 mod lane;
 mod limits;
 pub mod maximum_likelihood;

@@ -20,6 +20,7 @@
 
 use std::collections::VecDeque;
 
+use super::held::{Piece, Window, window};
 use super::limits::Limits;
 use super::shifts::Shifts;
 use super::usual::{GROUP, Usual, WindowStatistics};
@@ -49,67 +50,6 @@ pub(super) struct Stretch {
     pub(super) to: u64,
     /// The axes that stood still in it.
     pub(super) frozen: [bool; 3],
-}
-
-/// What a window holds, in order.
-#[derive(Clone, Copy, Debug)]
-enum Piece {
-    Values(usize),
-    Missing(u64),
-    Restart,
-}
-
-/// A stretch of about a second.
-#[derive(Clone, Debug, Default)]
-struct Window {
-    start: u64,
-    /// Instants in it, missing ones counted.
-    length: u64,
-    pieces: Vec<Piece>,
-    values: Vec<[f64; 3]>,
-    /// `None` where too few samples are there.
-    statistics: Option<WindowStatistics>,
-    disturbed: bool,
-    /// The axes that stand still in it.
-    frozen: [bool; 3],
-    /// The sensor stands otherwise from here on.
-    shifts: bool,
-}
-
-impl Window {
-    fn is_empty(&self) -> bool {
-        self.pieces.is_empty()
-    }
-
-    fn is_frozen(&self) -> bool {
-        self.frozen.contains(&true)
-    }
-
-    /// Its mean, where it is at rest and no hole of `far` instants is in it.
-    fn neighbour(&self, far: u64) -> Option<[f64; 3]> {
-        let statistics = self.statistics.filter(|_| !self.disturbed && self.length <= far)?;
-        Some(statistics.mean)
-    }
-
-    fn restarts(&self) -> bool {
-        self.pieces.iter().any(|piece| matches!(piece, Piece::Restart))
-    }
-
-    /// Tells all that it holds.
-    fn tell(&self, to: &mut impl FnMut(Event<'_>)) {
-        let mut values = self.values.as_slice();
-        for piece in &self.pieces {
-            match *piece {
-                Piece::Values(n) => {
-                    let (now, later) = values.split_at(n.min(values.len()));
-                    to(Event::Values(now));
-                    values = later;
-                }
-                Piece::Missing(n) => to(Event::Missing(n)),
-                Piece::Restart => to(Event::Restart),
-            }
-        }
-    }
 }
 
 /// Holds a sensor's samples back until it is known whether it was at rest.
@@ -467,13 +407,6 @@ impl Stillness {
             self.spare.push(window);
         }
     }
-}
-
-/// Samples a window at this rate (Hz). Ladders are fastest where windows end with their chunks of 64.
-fn window(rate: f64) -> usize {
-    const CHUNK: usize = 64;
-    let second = (rate as usize).clamp(16, 2048);
-    if second < CHUNK { second } else { (second + CHUNK / 2) / CHUNK * CHUNK }
 }
 
 #[cfg(test)]
