@@ -32,6 +32,7 @@ mod reckoner;
 mod rest;
 mod run;
 mod said;
+mod start;
 mod thin;
 mod truth;
 mod written;

@@ -1,29 +1,27 @@
 //! One integration under way: from rows of samples to states, holes, errors and files.
 
+use imu_core::State;
 use imu_core::nalgebra::Vector3;
 use imu_core::sample::Bias;
 use imu_core::time::Step;
-use imu_core::world::{Flat, RotatingEarth};
-use imu_core::{State, so3};
+use imu_core::world::Flat;
 
 use super::against::Against;
 use super::errors::ErrorSums;
 use super::pairs::{HOLE, Pairs, Row};
 use super::reckoner::{Place, Reckoner};
-use super::rest::Rest;
 use super::thin::Thin;
 use super::truth::{Begin, Truth};
 use super::written::Writer;
 use super::{
-    Begun, GravityFrom, Integration, KnownBias, Method, Motion, Options, Outcome, PathPoint, Start,
-    USUAL_GRAVITY, motion, rest, said,
+    Begun, Integration, KnownBias, Method, Motion, Options, Outcome, PathPoint, Start, motion, said,
 };
 use crate::error::Error;
 use crate::output::Output;
 use crate::recording::{Block, Note};
 
 /// How far it has come.
-enum Phase {
+pub(super) enum Phase {
     /// No start yet.
     Waiting,
     /// What was read since the start, which may be at rest.
@@ -45,7 +43,7 @@ pub(super) struct Run<'a> {
     pub(super) start: Start,
     pub(super) pairs: Pairs,
     pub(super) first_ns: Option<i64>,
-    phase: Phase,
+    pub(super) phase: Phase,
     pub(super) begun: Option<Begun>,
     pub(super) place: Place,
     pub(super) lanes: Vec<Lane>,
@@ -143,7 +141,7 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    fn row(&mut self, row: Row) -> Result<(), Error> {
+    pub(super) fn row(&mut self, row: Row) -> Result<(), Error> {
         match &mut self.phase {
             Phase::Waiting => self.wait(row),
             Phase::Resting(rows, _) => {
@@ -160,128 +158,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Begins here, if that can be.
-    fn wait(&mut self, row: Row) -> Result<(), Error> {
-        let begin = self.begin(row.stamp_ns)?;
-        if self.truth.is_some() && begin.is_none() {
-            self.too_early += 1;
-            return Ok(());
-        }
-        match begin.filter(|_| self.start == Start::Truth) {
-            Some(begin) => {
-                let bias = self.bias(Some(&begin));
-                let (gravity, from) =
-                    self.options.gravity.map_or((USUAL_GRAVITY, GravityFrom::Usual), |gravity| {
-                        (gravity, GravityFrom::Given)
-                    });
-                self.set_out(row, begin.motion, bias, (gravity, from), begin.differenced)
-            }
-            None => {
-                self.phase = Phase::Resting(vec![row], begin);
-                Ok(())
-            }
-        }
-    }
-
-    /// What the truth says of this instant.
-    fn begin(&mut self, stamp_ns: i64) -> Result<Option<Begin>, Error> {
-        let Some(truth) = &mut self.truth else { return Ok(None) };
-        truth.skip_until(stamp_ns)?;
-        truth.begin(stamp_ns)
-    }
-
-    /// The bias that was told; zero where none was.
-    fn bias(&self, begin: Option<&Begin>) -> Bias<f64> {
-        let none = Bias::default();
-        match self.options.bias {
-            None => none,
-            Some(KnownBias::Given(bias)) => bias,
-            Some(KnownBias::Truth) => begin.and_then(|begin| begin.bias).unwrap_or(none),
-        }
-    }
-
-    /// Begins where the resting began, level.
-    fn rise(&mut self) -> Result<(), Error> {
-        let Phase::Resting(rows, begin) = std::mem::replace(&mut self.phase, Phase::Stopped) else {
-            return Ok(());
-        };
-        let Some(first) = rows.first().copied() else { return Ok(()) };
-        let told = self.bias(begin.as_ref());
-        let rest = Rest::of(&rows).map_err(|why| self.not_at_rest(&rows, &why))?;
-        let force = rest.force - told.specific_force();
-        let heading = begin.map_or(0.0, |begin| rest::heading(&begin.motion.attitude_wb));
-        let attitude_wb = rest::level(&force, heading);
-        let measured = (motion::length(&force), GravityFrom::Rest);
-        self.force_at_rest = Some(measured.0);
-        let gravity = self.options.gravity.map_or(measured, |g| (g, GravityFrom::Given));
-        let bias = if self.options.bias.is_some() {
-            told
-        } else {
-            let turning = match self.options.place {
-                None => Vector3::zeros(),
-                Some(place) => so3::rotate(&so3::inverse(&attitude_wb), &earth(place)?.rate()),
-            };
-            Bias::new(rest.rate - turning, Vector3::zeros()).map_err(|e| self.impossible(e))?
-        };
-        let position_w = begin.map_or(Vector3::zeros(), |begin| begin.motion.position_w);
-        let motion = Motion { attitude_wb, velocity_w: Some(Vector3::zeros()), position_w };
-        self.set_out(first, motion, bias, gravity, false)?;
-        rows.into_iter().skip(1).try_for_each(|row| self.row(row))
-    }
-
-    fn not_at_rest(&self, rows: &[Row], why: &str) -> Error {
-        let ends = rows.last().zip(rows.first());
-        let span = ends.map_or(0, |(last, first)| last.stamp_ns.saturating_sub(first.stamp_ns));
-        let mend = if self.truth.is_some() {
-            "start from the truth (--start truth), or from a time at which it rests (--from)"
-        } else {
-            "name a truth to start from (--truth FILE), or start from a time at which it rests (--from)"
-        };
-        Error::data(format!(
-            "the first {:.3} s of {} are not at rest ({why}): {mend}",
-            span as f64 * 1e-9,
-            self.path
-        ))
-    }
-
-    /// The first step can be taken.
-    fn set_out(
-        &mut self,
-        row: Row,
-        motion: Motion,
-        bias: Bias<f64>,
-        gravity: (f64, GravityFrom),
-        differenced: bool,
-    ) -> Result<(), Error> {
-        let gravity = match self.options.place {
-            None => {
-                let down = Vector3::new(0.0, 0.0, -gravity.0);
-                self.place = Place::Flat(Flat::new(down).map_err(|e| self.impossible(e))?);
-                gravity
-            }
-            Some(place) => {
-                let earth = earth(place)?;
-                self.place = Place::Earth(earth);
-                (-earth.gravity().z, GravityFrom::Place)
-            }
-        };
-        self.begun = Some(Begun {
-            from: self.start,
-            stamp_ns: row.stamp_ns,
-            motion,
-            bias,
-            gravity: gravity.0,
-            gravity_from: gravity.1,
-            differenced,
-        });
-        if self.truth.is_some() {
-            self.true_path.push(PathPoint { t_s: 0.0, position_w: motion.position_w.into() });
-        }
-        self.place_at(row, &motion)
-    }
-
     /// Puts all rules into this state.
-    fn place_at(&mut self, row: Row, motion: &Motion) -> Result<(), Error> {
+    pub(super) fn place_at(&mut self, row: Row, motion: &Motion) -> Result<(), Error> {
         let velocity_w = motion.velocity_w.unwrap_or_else(Vector3::zeros);
         let state = State::new(motion.attitude_wb, velocity_w, motion.position_w)
             .map_err(|e| self.impossible(e))?;
@@ -434,7 +312,7 @@ impl<'a> Run<'a> {
         Ok((integration, files))
     }
 
-    fn impossible(&self, error: imu_core::Error) -> Error {
+    pub(super) fn impossible(&self, error: imu_core::Error) -> Error {
         impossible(self.path, error)
     }
 }
@@ -442,12 +320,6 @@ impl<'a> Run<'a> {
 /// What the core refuses although it was looked at before.
 fn impossible(path: &str, error: imu_core::Error) -> Error {
     Error::data(format!("{path} cannot be integrated: {error}; look at it with imu info"))
-}
-
-fn earth((latitude, height): (f64, f64)) -> Result<RotatingEarth<f64>, Error> {
-    RotatingEarth::new(latitude, height).map_err(|_| {
-        Error::usage("--latitude wants degrees from -90 to 90, --height metres within 100 km")
-    })
 }
 
 impl Lane {
