@@ -10,4 +10,5 @@ pub mod output;
 pub mod recording;
 pub mod report;
 pub mod scene;
+pub mod spline;
 pub mod tradeoff;

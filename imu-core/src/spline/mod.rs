@@ -52,6 +52,7 @@
 mod basis;
 mod cached;
 mod control;
+mod interpolate;
 mod kinematics;
 mod knots;
 mod r3;
@@ -64,6 +65,7 @@ mod turn;
 
 pub use cached::{Knot, ScrewKnot, cache, cache_screws};
 pub use control::{Attitudes, ControlPoint, Curve, Positions, Screws};
+pub use interpolate::{Interpolated, interpolate};
 pub use kinematics::{Attitude, Full, PoseAndVelocity, Position};
 pub use knots::Knots;
 pub use r3::R3Spline;

@@ -1,0 +1,202 @@
+//! Curves fitted to poses: what a user's own trajectory becomes before an IMU can follow it.
+//!
+//! Poses at equal steps are interpolated where a control point each is asked for; all else is a least-squares fit, with
+//! knots at equal steps of the caller's choice, or as far apart as a wanted error allows, and as smooth as asked for.
+//! A [`Fit`] knows how far it is from its poses, and what the poses' own jitter makes of rates and accelerations: a
+//! second derivative multiplies noise by 1/h².
+//!
+//! ```
+//! use imu_core::nalgebra::Vector3;
+//! use imu_core::{se3::Pose, so3};
+//! use imu_tools::spline::{FormName, Options, Spacing, TimedPose, fit};
+//!
+//! let poses: Vec<_> = (0..200_i64)
+//!     .map(|k| {
+//!         let t = 0.05 * k as f64;
+//!         let pose = Pose::new(so3::exp(Vector3::new(0.0, 0.2 * t.sin(), 0.3 * t)), Vector3::new(t.sin(), t, 1.0))?;
+//!         Ok(TimedPose { stamp_ns: 50_000_000 * k, pose })
+//!     })
+//!     .collect::<Result<_, imu_core::Error>>()?;
+//! let within = Spacing::Within { position_m: 1e-3, rotation_rad: 1e-3 };
+//! let fit = fit(&poses, &Options { form: FormName::Symmetric, spacing: within, smoothing_s: 0.0 }).unwrap();
+//! assert!(fit.error.largest_position_m < 1e-3 && fit.knots.step_ns() > 200_000_000);
+//! # Ok::<(), imu_core::Error>(())
+//! ```
+
+mod banded;
+mod distance;
+mod jitter;
+mod least_squares;
+mod spacing;
+
+pub use distance::Distance;
+pub use jitter::{Jitter, JitterOfCurve};
+pub use spacing::Spacing;
+
+use imu_core::nalgebra::Vector3;
+use imu_core::se3::Pose;
+use imu_core::so3;
+use imu_core::spline::{Form, Knots, OneSided, TimeSymmetric, interpolate};
+
+use least_squares::LeastSquares;
+
+/// The fewest poses that make a cubic curve.
+pub const FEWEST_POSES: usize = 4;
+
+/// A pose and its instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimedPose {
+    /// Nanoseconds since any beginning; later than that of the pose before.
+    pub stamp_ns: i64,
+    /// `T_wb`.
+    pub pose: Pose<f64>,
+}
+
+/// Which curve of attitudes runs through control points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FormName {
+    /// The cumulative product ([`OneSided`]): what other programs take control points for.
+    Plain,
+    /// The time-symmetric one ([`TimeSymmetric`]), of order 4.
+    Symmetric,
+}
+
+impl FormName {
+    /// `plain` or `symmetric`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Plain => "plain",
+            Self::Symmetric => "symmetric",
+        }
+    }
+}
+
+/// How to fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Which curve.
+    pub form: FormName,
+    /// Where its knots are.
+    pub spacing: Spacing,
+    /// τ in s: of what moves with 1/(2πτ) Hz half is left, of what moves twice as fast a 65th; 0: no smoothing beyond
+    /// that of the knots' spacing.
+    pub smoothing_s: f64,
+}
+
+/// Why there is no curve.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// A cubic needs four poses.
+    #[error("a curve needs {FEWEST_POSES} poses or more, and there are {0}")]
+    TooFew(usize),
+    /// Stamps have to rise.
+    #[error("pose {0} is not later than the one before")]
+    Backwards(usize),
+    /// No knots as asked.
+    #[error("{0}")]
+    Spacing(#[from] spacing::SpacingError),
+    /// Neighbouring control points half a turn apart.
+    #[error(
+        "neighbouring control points of the curve would be half a turn apart: take knots closer to each other, or \
+         look for poses that jump"
+    )]
+    Turn,
+    /// Numbers beyond what can be factored.
+    #[error("the poses do not decide a curve with knots {0} s apart; take them further apart")]
+    Undecided(f64),
+}
+
+impl From<imu_core::Error> for FitError {
+    /// What is left to go wrong once stamps and knots are checked.
+    fn from(_: imu_core::Error) -> Self {
+        Self::Turn
+    }
+}
+
+/// A curve, and how far it is from its poses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// Which curve.
+    pub form: FormName,
+    /// The instants of the control points.
+    pub knots: Knots<f64>,
+    /// The control points.
+    pub control: Vec<Pose<f64>>,
+    /// From the poses to the curve.
+    pub error: Distance,
+    /// Whether it was made to go through every pose, in place of near.
+    pub interpolates: bool,
+    /// What the poses' jitter makes of it; `None` where there are too few poses to tell.
+    pub jitter: Option<JitterOfCurve>,
+}
+
+/// Fits a curve to poses in the order of their stamps.
+///
+/// # Errors
+/// A sentence for each in [`FitError`].
+pub fn fit(poses: &[TimedPose], options: &Options) -> Result<Fit, FitError> {
+    if poses.len() < FEWEST_POSES {
+        return Err(FitError::TooFew(poses.len()));
+    }
+    if let Some(at) = poses.windows(2).position(|two| two[0].stamp_ns >= two[1].stamp_ns) {
+        return Err(FitError::Backwards(at + 2));
+    }
+    match options.form {
+        FormName::Plain => spacing::fitted::<OneSided>(poses, options),
+        FormName::Symmetric => spacing::fitted::<TimeSymmetric>(poses, options),
+    }
+}
+
+/// A fit with knots of this spacing.
+fn fit_every<F: Form<f64>>(
+    poses: &[TimedPose],
+    options: &Options,
+    step_ns: u32,
+) -> Result<Fit, FitError> {
+    let equal = poses
+        .windows(2)
+        .all(|two| two[1].stamp_ns.checked_sub(two[0].stamp_ns) == Some(i64::from(step_ns)));
+    let interpolates = equal && options.smoothing_s == 0.0;
+    let knots = spacing::knots(poses, step_ns)?;
+    let undecided = FitError::Undecided(f64::from(step_ns) / 1e9);
+    let solver = LeastSquares::new(poses, &knots, options.smoothing_s).ok_or(undecided)?;
+    let control = if interpolates {
+        let poses: Vec<_> = poses.iter().map(|pose| pose.pose).collect();
+        let mut control = vec![Pose::identity(); knots.count()];
+        interpolate::<_, F>(&poses, &mut control, &mut vec![Vector3::zeros(); poses.len()])?;
+        control
+    } else {
+        let places = solver.vectors(poses.iter().map(|pose| pose.pose.translation()));
+        let mut control = begin(poses, &knots)
+            .zip(places)
+            .map(|(attitude, place)| Pose::new(attitude, place))
+            .collect::<Result<Vec<_>, _>>()?;
+        solver.attitudes::<F>(poses, &knots, &mut control)?;
+        control
+    };
+    let error = Distance::of::<F>(poses, &knots, &control)?;
+    let jitter = Jitter::of(poses).map(|jitter| jitter.on(&solver, poses, &knots));
+    Ok(Fit { form: options.form, knots, control, error, interpolates, jitter })
+}
+
+/// The attitude of the poses at every control point: between two of them along the shortest turn.
+fn begin<'a>(
+    poses: &'a [TimedPose],
+    knots: &Knots<f64>,
+) -> impl Iterator<Item = imu_core::nalgebra::Quaternion<f64>> + use<'a> {
+    let (start_ns, step_ns) = (i128::from(knots.start_ns()), i128::from(knots.step_ns()));
+    (0..knots.count() as i128).map(move |k| {
+        let t = start_ns + k * step_ns;
+        let after =
+            poses.partition_point(|pose| i128::from(pose.stamp_ns) < t).clamp(1, poses.len() - 1);
+        let (a, b) = (&poses[after - 1], &poses[after]);
+        let share = (t - i128::from(a.stamp_ns)) as f64 / (b.stamp_ns - a.stamp_ns) as f64;
+        let (from, to) = (a.pose.rotation(), b.pose.rotation());
+        let turn = so3::log(&so3::product(&so3::inverse(&from), &to));
+        so3::product(&from, &so3::exp(turn * share.clamp(0.0, 1.0)))
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,118 @@
+//! Where knots are: as asked, or as far apart as a wanted error allows.
+
+use imu_core::spline::{Form, Knots};
+
+use super::{Fit, FitError, Options, TimedPose, fit_every};
+
+/// Candidates are this many to an octave, from all of the record down to the median time between poses.
+const TO_AN_OCTAVE: i32 = 4;
+/// More control points than this are refused: 1.4 GB.
+const MOST_KNOTS: i128 = 20_000_000;
+
+/// How far apart control points are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spacing {
+    /// As far as the poses: the median time between them.
+    AsPoses,
+    /// This far, ns.
+    Every(u32),
+    /// As far as they can be so that no pose is further from the curve than this.
+    Within {
+        /// m.
+        position_m: f64,
+        /// rad.
+        rotation_rad: f64,
+    },
+}
+
+/// Why there are no such knots.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SpacingError {
+    /// Longer than all of the poses.
+    #[error("knots {0} s apart are further apart than the first pose is from the last ({1} s)")]
+    TooLong(f64, f64),
+    /// Too many to hold.
+    #[error(
+        "knots {0} s apart would be {1} control points for these poses; take them further apart"
+    )]
+    TooMany(f64, i128),
+    /// No spacing down to that of the poses does it.
+    #[error(
+        "no curve stays within what was asked of every pose: with knots as close as the poses, {0} s apart, the \
+         largest distances are {1} m and {2} rad; ask for that, or look for poses that jump"
+    )]
+    NotWithin(f64, f64, f64),
+}
+
+/// The fit of the spacing that was asked for.
+pub(super) fn fitted<F: Form<f64>>(
+    poses: &[TimedPose],
+    options: &Options,
+) -> Result<Fit, FitError> {
+    let (position_m, rotation_rad) = match options.spacing {
+        Spacing::AsPoses => return fit_every::<F>(poses, options, median_step_ns(poses)),
+        Spacing::Every(step_ns) => return fit_every::<F>(poses, options, step_ns),
+        Spacing::Within { position_m, rotation_rad } => (position_m, rotation_rad),
+    };
+    let least = median_step_ns(poses);
+    let octaves = (span_ns(poses) as f64 / f64::from(least)).log2();
+    for k in (1..=(octaves * f64::from(TO_AN_OCTAVE)) as i32).rev() {
+        let step = f64::from(least) * (f64::from(k) / f64::from(TO_AN_OCTAVE)).exp2();
+        if step > f64::from(u32::MAX) {
+            continue;
+        }
+        // Knots so far apart that neighbours turn by half a turn are just too far apart.
+        match fit_every::<F>(poses, options, step as u32) {
+            Ok(fit) if is_within(&fit, position_m, rotation_rad) => return Ok(fit),
+            Ok(_) | Err(FitError::Turn | FitError::Undecided(_) | FitError::Spacing(_)) => {}
+            Err(other) => return Err(other),
+        }
+    }
+    let fit = fit_every::<F>(poses, options, least)?;
+    if is_within(&fit, position_m, rotation_rad) {
+        return Ok(fit);
+    }
+    let error = &fit.error;
+    Err(SpacingError::NotWithin(
+        f64::from(least) / 1e9,
+        error.largest_position_m,
+        error.largest_rotation_rad,
+    )
+    .into())
+}
+
+fn is_within(fit: &Fit, position_m: f64, rotation_rad: f64) -> bool {
+    fit.error.largest_position_m <= position_m && fit.error.largest_rotation_rad <= rotation_rad
+}
+
+/// The median time between poses, ns; at most what a step can be.
+fn median_step_ns(poses: &[TimedPose]) -> u32 {
+    let mut steps: Vec<_> =
+        poses.windows(2).map(|two| two[1].stamp_ns.abs_diff(two[0].stamp_ns)).collect();
+    let middle = steps.len() / 2;
+    let (_, median, _) = steps.select_nth_unstable(middle);
+    u32::try_from(*median).unwrap_or(u32::MAX)
+}
+
+fn span_ns(poses: &[TimedPose]) -> u64 {
+    match (poses.first(), poses.last()) {
+        (Some(first), Some(last)) => last.stamp_ns.abs_diff(first.stamp_ns),
+        _ => 0,
+    }
+}
+
+/// Knots this far apart whose curve spans the poses, from the first on.
+pub(super) fn knots(poses: &[TimedPose], step_ns: u32) -> Result<Knots<f64>, FitError> {
+    let (span, seconds) = (span_ns(poses), f64::from(step_ns) / 1e9);
+    let first = poses.first().map_or(0, |pose| pose.stamp_ns);
+    let too_long = SpacingError::TooLong(seconds, span as f64 / 1e9);
+    if u64::from(step_ns) > span || step_ns == 0 {
+        return Err(too_long.into());
+    }
+    let count = i128::from(span.div_ceil(u64::from(step_ns))) + 3;
+    if count > MOST_KNOTS {
+        return Err(SpacingError::TooMany(seconds, count).into());
+    }
+    let start = first.checked_sub(i64::from(step_ns)).ok_or(too_long)?;
+    Knots::new(start, step_ns, count as usize).map_err(|_| too_long.into())
+}

@@ -1,0 +1,170 @@
+use imu_core::noise::{Normal as _, Xoshiro256PlusPlus};
+use imu_core::spline::{SplitSpline, SymmetricSplitSpline};
+use imu_core::trajectory::{Ellipse, Motion, Trajectory as _};
+use rand_core::SeedableRng as _;
+
+use super::*;
+
+fn on_the_ellipse(stamp_ns: i64) -> TimedPose {
+    let motion: Motion<f64> = Ellipse::default().at(stamp_ns);
+    let pose = Pose::new(motion.attitude_wb, motion.position_w).unwrap();
+    TimedPose { stamp_ns, pose }
+}
+
+fn every(step_ns: i64, count: i64) -> Vec<TimedPose> {
+    (0..count).map(|k| on_the_ellipse(k * step_ns)).collect()
+}
+
+/// Poses with noise of these deviations.
+fn jittered(poses: &[TimedPose], position_m: f64, rotation_rad: f64) -> Vec<TimedPose> {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(7);
+    let mut noise = |sd| Vector3::from([(); 3].map(|()| sd * f64::standard_normal(&mut rng)));
+    poses
+        .iter()
+        .map(|TimedPose { stamp_ns, pose }| {
+            let turned = so3::product(&pose.rotation(), &so3::exp(noise(rotation_rad)));
+            let pose = Pose::new(turned, pose.translation() + noise(position_m)).unwrap();
+            TimedPose { stamp_ns: *stamp_ns, pose }
+        })
+        .collect()
+}
+
+fn options(form: FormName, spacing: Spacing) -> Options {
+    Options { form, spacing, smoothing_s: 0.0 }
+}
+
+#[test]
+fn poses_at_equal_steps_are_interpolated() {
+    let poses = every(50_000_000, 200);
+    for form in [FormName::Plain, FormName::Symmetric] {
+        let fit = fit(&poses, &options(form, Spacing::AsPoses)).unwrap();
+        assert!(fit.interpolates && fit.control.len() == 202);
+        // Roundings of places 25 m away and of quaternions.
+        assert!(fit.error.largest_position_m < 2e-14, "{:?}", fit.error);
+        assert!(fit.error.largest_rotation_rad < 4e-15, "{:?}", fit.error);
+    }
+}
+
+#[test]
+fn least_squares_find_a_curve_that_is_one() {
+    // A curve of known control points, looked at at uneven instants, comes back.
+    let coarse = fit(&every(200_000_000, 30), &options(FormName::Plain, Spacing::AsPoses)).unwrap();
+    let curve = SplitSpline::new(-200_000_000, 200_000_000, &coarse.control).unwrap();
+    let poses: Vec<_> = (0..580_i64)
+        .map(|k| {
+            let stamp_ns = k * 10_000_000 + (k * k * 7919) % 9_000_000;
+            TimedPose { stamp_ns, pose: curve.pose(stamp_ns).unwrap() }
+        })
+        .collect();
+    let again = fit(&poses, &options(FormName::Plain, Spacing::Every(200_000_000))).unwrap();
+    assert!(!again.interpolates);
+    // Least smoothing, 10⁻¹⁰ of the 20 poses of an interval, of third differences of 0.25 m and 0.002 rad, times 20.
+    assert!(again.error.largest_position_m < 1e-8, "{:?}", again.error);
+    assert!(again.error.largest_rotation_rad < 1e-10, "{:?}", again.error);
+}
+
+#[test]
+fn knots_are_as_far_apart_as_the_error_allows() {
+    let poses = every(10_000_000, 2000);
+    let mut last = u32::MAX;
+    for (within, order) in [(1e-2, 4), (1e-4, 4), (1e-6, 4)].map(|(e, n)| (e, f64::from(n))) {
+        let spacing = Spacing::Within { position_m: within, rotation_rad: 1.0 };
+        let fit = fit(&poses, &options(FormName::Symmetric, spacing)).unwrap();
+        assert!(fit.error.largest_position_m <= within);
+        // The next candidate is 2^(1/4) further apart and 2 times as far off; least squares halve it at most.
+        assert!(fit.error.largest_position_m > within / 8.0, "{within}: {:?}", fit.error);
+        let step = fit.knots.step_ns();
+        let ratio = f64::from(last) / f64::from(step);
+        assert!(last == u32::MAX || (ratio / 100_f64.powf(1.0 / order)).ln().abs() < 0.4);
+        last = step;
+    }
+}
+
+#[test]
+fn jitter_is_found_and_what_it_makes() {
+    let (position_m, rotation_rad) = (1e-3, 2e-3);
+    let clean = every(20_000_000, 3000);
+    let noisy = jittered(&clean, position_m, rotation_rad);
+    let fit = fit(&noisy, &options(FormName::Symmetric, Spacing::Every(40_000_000))).unwrap();
+    let jitter = fit.jitter.unwrap();
+    // 9000 sizes, seven of which share a pose: the median scatters by 2 %.
+    assert!((jitter.poses.position_m / position_m - 1.0).abs() < 0.1, "{jitter:?}");
+    assert!((jitter.poses.rotation_rad / rotation_rad - 1.0).abs() < 0.1, "{jitter:?}");
+    let curve = SymmetricSplitSpline::new(fit.knots.start_ns(), fit.knots.step_ns(), &fit.control);
+    let curve = curve.unwrap();
+    let (mut acceleration, mut rate, mut count) = (0.0, 0.0, 0.0);
+    for k in 100..5900_i64 {
+        let t_ns = k * 10_000_000;
+        let full = curve.full(t_ns).unwrap();
+        let truth: Motion<f64> = Ellipse::default().at(t_ns);
+        let felt = so3::rotate(&truth.attitude_wb, &truth.specific_force);
+        let off = full.acceleration_w - felt + Vector3::new(0.0, 0.0, 9.81);
+        let turn = full.angular_rate - truth.angular_rate;
+        acceleration += off.iter().map(|x| x * x).sum::<f64>() / 3.0;
+        rate += turn.iter().map(|x| x * x).sum::<f64>() / 3.0;
+        count += 1.0;
+    }
+    // 1500 intervals of three axes, neighbours alike: 2 % each, and 10 % of the jitter's own.
+    let (acceleration, rate) = (f64::sqrt(acceleration / count), f64::sqrt(rate / count));
+    assert!((jitter.acceleration / acceleration - 1.0).abs() < 0.15, "{jitter:?} {acceleration}");
+    assert!((jitter.angular_rate / rate - 1.0).abs() < 0.15, "{jitter:?} {rate}");
+}
+
+#[test]
+fn smoothing_passes_what_it_says() {
+    // One axis swings with 1 Hz: at the half-power frequency half of it is left, at half of that 64 of 65 parts.
+    for (hertz, left) in [(1.0, 0.5), (2.0, 64.0 / 65.0)] {
+        let poses: Vec<_> = (0..4000_i64)
+            .map(|k| {
+                let x = (core::f64::consts::TAU * 0.01 * k as f64).sin();
+                let place = Vector3::new(x, 0.0, 0.0);
+                let pose = Pose::new(so3::exp(place * 0.1), place).unwrap();
+                TimedPose { stamp_ns: k * 10_000_000, pose }
+            })
+            .collect();
+        let smoothing_s = 1.0 / (core::f64::consts::TAU * hertz);
+        let spacing = Spacing::Every(40_000_000);
+        let fit =
+            fit(&poses, &Options { form: FormName::Symmetric, spacing, smoothing_s }).unwrap();
+        let curve =
+            SymmetricSplitSpline::new(fit.knots.start_ns(), 40_000_000, &fit.control).unwrap();
+        let peak = curve.pose(20_250_000_000).unwrap();
+        assert!((peak.translation().x - left).abs() < 2e-3, "{hertz} {}", peak.translation().x);
+        let turn = so3::log(&peak.rotation()).x / 0.1;
+        assert!((turn - left).abs() < 2e-3, "{hertz} {turn}");
+    }
+}
+
+#[test]
+fn a_hole_is_crossed_smoothly() {
+    let mut poses = every(20_000_000, 500);
+    poses.drain(200..225);
+    let fit = fit(&poses, &options(FormName::Symmetric, Spacing::Every(50_000_000))).unwrap();
+    let curve = SymmetricSplitSpline::new(fit.knots.start_ns(), 50_000_000, &fit.control).unwrap();
+    let middle = 4_250_000_000;
+    let (there, truth) = (curve.pose(middle).unwrap(), on_the_ellipse(middle).pose);
+    // Half a second across: what a parabola from both sides misses, a few centimetres of a bobbing of 1 m and π rad/s.
+    assert!((there.translation() - truth.translation()).abs().max() < 0.05);
+}
+
+#[test]
+fn what_makes_no_curve_is_refused() {
+    let poses = every(50_000_000, 20);
+    let plain = |spacing| options(FormName::Plain, spacing);
+    assert_eq!(fit(&poses[..3], &plain(Spacing::AsPoses)), Err(FitError::TooFew(3)));
+    let mut swapped = poses.clone();
+    swapped.swap(4, 5);
+    assert_eq!(fit(&swapped, &plain(Spacing::AsPoses)), Err(FitError::Backwards(6)));
+    let refused =
+        |poses: &[TimedPose], spacing| fit(poses, &plain(spacing)).unwrap_err().to_string();
+    assert!(refused(&poses, Spacing::Every(2_000_000_000)).contains("further apart"));
+    assert!(refused(&poses, Spacing::Every(0)).contains("further apart"));
+    assert!(refused(&poses, Spacing::Every(1)).contains("control points"));
+    let none = Spacing::Within { position_m: 0.0, rotation_rad: 0.0 };
+    assert!(refused(&jittered(&poses, 1.0, 0.1), none).contains("no curve stays"));
+    let mut jumps = poses.clone();
+    let half_turn = so3::exp(Vector3::new(0.0, 0.0, core::f64::consts::PI));
+    let turned = so3::product(&jumps[9].pose.rotation(), &half_turn);
+    jumps[10].pose = Pose::new(turned, jumps[10].pose.translation()).unwrap();
+    assert_eq!(fit(&jumps, &plain(Spacing::AsPoses)), Err(FitError::Turn));
+}
