@@ -14,6 +14,7 @@ mod edf;
 mod fit;
 pub mod inputs;
 mod integrate;
+mod interpolate;
 mod ladder;
 mod noise;
 mod preintegrate;
@@ -82,6 +83,8 @@ pub const CASES: &[Case] = &[
     Case { name: "integrate f64", run: integrate::case::<f64> },
     Case { name: "integrate steps f32", run: integrate::cost_in_single },
     Case { name: "integrate steps f64", run: integrate::cost_in_double },
+    Case { name: "interpolate f32", run: interpolate::case::<f32> },
+    Case { name: "interpolate f64", run: interpolate::case::<f64> },
     Case { name: "preintegrate f32", run: preintegrate::case_in_single },
     Case { name: "preintegrate f64", run: preintegrate::case_in_double },
     Case { name: "preintegrate steps f32", run: preintegrate::cost },
