@@ -51,6 +51,7 @@
 
 mod basis;
 mod cached;
+mod concrete;
 mod control;
 mod interpolate;
 mod kinematics;
@@ -64,6 +65,7 @@ mod symmetric;
 mod turn;
 
 pub use cached::{Knot, ScrewKnot, cache, cache_screws};
+pub use concrete::{double, single};
 pub use control::{Attitudes, ControlPoint, Curve, Positions, Screws};
 pub use interpolate::{Interpolated, interpolate};
 pub use kinematics::{Attitude, Full, PoseAndVelocity, Position};

@@ -22,6 +22,7 @@ mod scalar;
 mod sensor;
 pub mod single;
 mod so3;
+mod spline;
 mod term_fit;
 mod terms;
 mod trajectory;
@@ -90,6 +91,10 @@ pub const CASES: &[Case] = &[
     Case { name: "preintegrate steps f32", run: preintegrate::cost },
     Case { name: "trajectory f32", run: trajectory::case::<f32> },
     Case { name: "trajectory f64", run: trajectory::case::<f64> },
+    Case { name: "spline f32", run: spline::case_in_single },
+    Case { name: "spline f64", run: spline::case_in_double },
+    Case { name: "spline evaluations f32", run: spline::cost_in_single },
+    Case { name: "spline evaluations f64", run: spline::cost_in_double },
     Case { name: "Allan f32 1", run: ladder::bits::<f32, 1, 1> },
     Case { name: "Allan f32 4", run: ladder::bits::<f32, 4, 1> },
     Case { name: "Hadamard f32 1", run: ladder::bits::<f32, 1, 2> },
