@@ -307,13 +307,13 @@ macro_rules! cost {
             count("IMU", &mut || {
                 repeat(64, || $of::imu(black_box(&cached), black_box(t), &gravity));
             });
-            count("full, uncached", &mut || {
+            count("full uncached", &mut || {
                 repeat(64, || $of::uncached_full(black_box(&uncached), black_box(t)));
             });
-            count("full, symmetric", &mut || {
+            count("full symmetric", &mut || {
                 repeat(64, || $of::symmetric_full(black_box(&symmetric), black_box(t)));
             });
-            count("full, SE(3)", &mut || {
+            count("full SE(3)", &mut || {
                 repeat(64, || $of::se3_full(black_box(&se3), black_box(t)));
             });
             report.stack("full", &mut || {
