@@ -41,20 +41,20 @@ pub fn decide(mut contenders: Vec<Contender>, rounds: usize, items: usize) -> Ex
             contender.times.push(start.elapsed().as_secs_f64() * 1e9 / items as f64);
         }
     }
-    println!("{:20} {:>8} {:>8} {:>6} {:>8}  median", "", "fastest", "at most", "ratio", "at most");
+    println!("{:26} {:>8} {:>8} {:>6} {:>8}  median", "", "fastest", "at most", "ratio", "at most");
     let (mut met, mut baseline) = (true, f64::NAN);
     for Contender { name, budget, times, .. } in &mut contenders {
         times.sort_by(f64::total_cmp);
         let (fastest, median) = (times[0], times[rounds / 2]);
         let Some(Budget { time, ratio }) = budget else {
             baseline = fastest;
-            println!("{name:20} {fastest:8.2} {:>8} {:>6} {:>8} {median:7.2}", "", "", "");
+            println!("{name:26} {fastest:8.2} {:>8} {:>6} {:>8} {median:7.2}", "", "", "");
             continue;
         };
         let promised = time.map_or_else(String::new, |time| format!("{time:.2}"));
         let times_slower = fastest / baseline;
         println!(
-            "{name:20} {fastest:8.2} {promised:>8} {times_slower:6.2} {ratio:8.1} {median:7.2}"
+            "{name:26} {fastest:8.2} {promised:>8} {times_slower:6.2} {ratio:8.2} {median:7.2}"
         );
         met &= times_slower <= *ratio && time.is_none_or(|time| fastest <= time);
     }
