@@ -9,9 +9,11 @@ mod convert;
 mod demo;
 mod info;
 mod integrate;
+mod play;
 mod progress;
 mod reading;
 mod simulate;
+mod spline;
 mod terminal;
 mod tradeoff;
 
@@ -43,6 +45,7 @@ enum Command {
     Info(info::Info),
     Integrate(integrate::Integrate),
     Simulate(simulate::Simulate),
+    Spline(spline::Spline),
     Tradeoff(tradeoff::Tradeoff),
 }
 
@@ -65,6 +68,7 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Info(info) => info.run(),
         Command::Integrate(integrate) => integrate.run(),
         Command::Simulate(simulate) => simulate.run(),
+        Command::Spline(spline) => spline.run(),
         Command::Tradeoff(tradeoff) => tradeoff.run(),
     };
     match result {

@@ -4,12 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{progress, same_target};
+use super::play::{Played, Targets};
 use crate::error::Error;
-use crate::recording::{self, Block, Contents, Format, SampleKind, Sink};
+use crate::recording::{Format, SampleKind};
 use crate::scene::{
-    Path as Motion, Preset, Rate, Scene, Simulator, TermsWriter, TruthWriter, display_duration,
-    parse_duration,
+    Instead, Path as Motion, Preset, Rate, Scene, display_duration, parse_duration,
 };
 
 const EXAMPLES: &str = "\
@@ -22,6 +21,8 @@ Examples:
       into a pipe, as CSV
   imu simulate scene.toml -o imu.csv --samples increments --truth-terms terms.csv
       increments of angle and velocity, and what each error adds to them
+  imu simulate flight.toml -o flight.bag --truth flight.truth.csv
+      along your own trajectory, if the scene has a line trajectory = \"poses.tum\" (TUM or EuRoC)
   imu simulate scene.toml -o imu.bag
       your own errors, for each sensor and axis, of the clock and the link (docs/scenes.md):
           rate_hz = 400
@@ -55,7 +56,7 @@ pub(super) struct Simulate {
     /// Move on the classic ellipse instead of standing still
     #[arg(long)]
     moving: bool,
-    /// How long: 4h, 1h30m, 90s [default: the scene's, 4h]
+    /// How long: 4h, 1h30m, 90s [default: the scene's, 4h, all of a trajectory]
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     duration: Option<String>,
     /// Samples a second [default: the scene's, 200]
@@ -79,88 +80,43 @@ pub(super) struct Simulate {
     truth_terms: Option<PathBuf>,
 }
 
-/// Everything that is written.
-struct Targets {
-    sink: Box<dyn Sink>,
-    truth: Option<TruthWriter>,
-    terms: Option<TermsWriter>,
-}
-
 impl Simulate {
     pub(super) fn run(self) -> Result<(), Error> {
         let scene = self.scene()?;
-        self.check_targets()?;
-        let mut simulator = Simulator::new(&scene)?;
-        let samples = simulator.samples_left();
-        let format = self.format.map_or_else(|| Format::of(&self.output), Ok)?;
-        let contents =
-            Contents { samples: scene.samples, temperature: scene.temperature.is_some() };
-        let mut targets = Targets {
-            sink: recording::create_with(&self.output, format, contents)?,
-            truth: self.truth.as_ref().map(|path| TruthWriter::create(path, &scene)).transpose()?,
-            terms: self
-                .truth_terms
-                .as_ref()
-                .map(|path| TermsWriter::create(path, &scene))
-                .transpose()?,
+        let targets = Targets {
+            output: &self.output,
+            format: self.format,
+            truth: self.truth.as_deref(),
+            terms: self.truth_terms.as_deref(),
         };
-        let lost = targets.write(&mut simulator)?;
-        targets.finish()?;
-        super::say(&format!("imu: wrote {}", self.summary(&scene, samples, lost)));
-        if let Some(unsaid) = unsaid(format, contents) {
-            super::say(&format!("imu: {}: {unsaid}", super::target_name(&self.output)));
-        }
-        Ok(())
-    }
-
-    /// That no file is to be written twice, nor over the scene.
-    fn check_targets(&self) -> Result<(), Error> {
-        let targets = [
-            (Some(&self.output), "recording"),
-            (self.truth.as_ref(), "truth"),
-            (self.truth_terms.as_ref(), "terms"),
-        ];
-        let targets: Vec<(&PathBuf, &str)> =
-            targets.into_iter().filter_map(|(path, what)| Some((path?, what))).collect();
-        for (i, (path, what)) in targets.iter().enumerate() {
-            let same = |(other, _): &&(&PathBuf, &str)| same_target(path, other);
-            if let Some((_, before)) = targets[..i].iter().find(same) {
-                return Err(Error::usage(format!(
-                    "the {before} and the {what} cannot both go to {}: name two files",
-                    path.display()
-                )));
-            }
-            let is_file = Preset::from_name(&self.scene).is_none();
-            if is_file && same_target(path, Path::new(&self.scene)) {
-                return Err(Error::usage(format!(
-                    "{} is the scene itself: name another file to write",
-                    path.display()
-                )));
-            }
-        }
+        let is_file = Preset::from_name(&self.scene).is_none();
+        targets.check(is_file.then_some((Path::new(&self.scene), "the scene itself")))?;
+        let played = targets.play(&scene)?;
+        super::say(&format!("imu: wrote {}", self.summary(&scene, &played)));
         Ok(())
     }
 
     /// The scene asked for, with the flags over it.
     fn scene(&self) -> Result<Scene, Error> {
+        let instead = Instead {
+            rate: self.rate.map(Rate::from_hz).transpose()?,
+            samples: self.samples,
+            duration_ns: self.duration.as_deref().map(parse_duration).transpose()?,
+        };
         let mut scene = match Preset::from_name(&self.scene) {
-            Some(preset) => preset.scene(),
-            None => read(Path::new(&self.scene))?,
+            Some(preset) => preset.scene().with(&instead),
+            None => read(Path::new(&self.scene), &instead)?,
         };
         if self.moving {
+            if let Motion::Along(_) = scene.motion {
+                return Err(Error::usage(
+                    "the scene has a trajectory of its own: leave --moving out",
+                ));
+            }
             scene.motion = Motion::Ellipse;
-        }
-        if let Some(text) = &self.duration {
-            scene.duration_ns = parse_duration(text)?;
-        }
-        if let Some(hz) = self.rate {
-            scene.rate = Rate::from_hz(hz)?;
         }
         if let Some(seed) = self.seed {
             scene.seed = seed;
-        }
-        if let Some(samples) = self.samples {
-            scene.samples = samples;
         }
         if let Some(hz) = self.lowpass {
             scene.gyroscope.lowpass_hz = Some(hz);
@@ -169,7 +125,7 @@ impl Simulate {
         Ok(scene)
     }
 
-    fn summary(&self, scene: &Scene, due: u64, lost: u64) -> String {
+    fn summary(&self, scene: &Scene, &Played { samples, lost }: &Played) -> String {
         let to = super::target_name(&self.output);
         let beside = [(&self.truth, "truth"), (&self.truth_terms, "terms")];
         let beside: String = beside
@@ -182,7 +138,6 @@ impl Simulate {
             0 => String::new(),
             lost => format!(", {lost} more were lost"),
         };
-        let samples = due - lost;
         format!(
             "{samples} {} of both sensors ({} at {} Hz, seed {}{without}) to {to}{beside}",
             if samples == 1 { "sample" } else { "samples" },
@@ -193,64 +148,8 @@ impl Simulate {
     }
 }
 
-/// What a recording of this format cannot say of its contents.
-fn unsaid(format: Format, contents: Contents) -> Option<String> {
-    let Contents { samples, temperature } = contents;
-    let kind = match (format, samples) {
-        (_, SampleKind::Instantaneous) | (Format::Csv | Format::Euroc, _) => None,
-        (Format::Bag | Format::Mcap, _) => Some(format!(
-            "this format has no place for the kind of its samples; they are {}",
-            samples.meaning()
-        )),
-    };
-    let temperature = (temperature && format != Format::Csv)
-        .then(|| "the temperature is not in it; a .csv has a column for it".to_owned());
-    let all: Vec<String> = kind.into_iter().chain(temperature).collect();
-    (!all.is_empty()).then(|| all.join("; "))
-}
-
-impl Targets {
-    /// Plays the scene to its end; how many of its samples were lost.
-    fn write(&mut self, simulator: &mut Simulator) -> Result<u64, Error> {
-        let due = simulator.samples_left();
-        let bar = progress::bar(due, "simulating");
-        if self.terms.is_some() {
-            simulator.keep_terms();
-        }
-        let (mut block, mut written) = (Block::default(), 0);
-        loop {
-            if self.truth.is_some() || self.terms.is_some() {
-                let Some(truth) = simulator.advance_with_truth(&mut block) else { break };
-                if let Some(writer) = &mut self.truth {
-                    writer.write(truth)?;
-                }
-                if let Some(writer) = &mut self.terms {
-                    writer.write(truth)?;
-                }
-            } else if !simulator.advance(&mut block) {
-                break;
-            }
-            self.sink.write_block(&block)?;
-            written += block.gyroscope.len() as u64;
-            bar.set_position(due - simulator.samples_left());
-        }
-        Ok(due - written)
-    }
-
-    fn finish(self) -> Result<(), Error> {
-        self.sink.finish()?;
-        if let Some(truth) = self.truth {
-            truth.finish()?;
-        }
-        if let Some(terms) = self.terms {
-            terms.finish()?;
-        }
-        Ok(())
-    }
-}
-
 /// Reads a scene file; a word that is neither a file nor a preset is a mistake on the command line.
-fn read(path: &Path) -> Result<Scene, Error> {
+fn read(path: &Path, instead: &Instead) -> Result<Scene, Error> {
     let is_word = path.extension().is_none() && path.components().count() == 1;
     if is_word && !path.exists() {
         return Err(Error::usage(format!(
@@ -263,5 +162,5 @@ fn read(path: &Path) -> Result<Scene, Error> {
     let text = String::from_utf8(bytes).map_err(|_| {
         Error::data(format!("{} is no scene file: it is not text in UTF-8", path.display()))
     })?;
-    Scene::from_toml(&text, &path.display().to_string())
+    Scene::from_toml_with(&text, &path.display().to_string(), instead)
 }

@@ -11,6 +11,7 @@ use imu_core::State;
 use super::method::Method;
 use crate::error::Error;
 use crate::output::Output;
+use crate::recording::poses;
 
 /// Text is handed on when there is so much of it.
 const PIECE: usize = 256 * 1024;
@@ -34,7 +35,7 @@ impl Writer {
         let header = "t_ns,p_x_m,p_y_m,p_z_m,q_w,q_x,q_y,q_z,v_x_m_s,v_y_m_s,v_z_m_s\n";
         Ok(Self {
             csv: (Output::create(&csv)?, header.into()),
-            tum: (Output::create(&tum)?, "# timestamp tx ty tz qx qy qz qw\n".into()),
+            tum: (Output::create(&tum)?, poses::TUM_HEADER.into()),
         })
     }
 
@@ -51,13 +52,7 @@ impl Writer {
         text.push(b'\n');
         flush(output, text, PIECE)?;
         let (output, text) = &mut self.tum;
-        let (sign, size) = (if stamp_ns < 0 { "-" } else { "" }, stamp_ns.unsigned_abs());
-        let _ = write!(text, "{sign}{}.{:09}", size / 1_000_000_000, size % 1_000_000_000);
-        for number in p.iter().chain([&q.i, &q.j, &q.k, &q.w]) {
-            text.push(b' ');
-            text.extend_from_slice(digits.format(*number).as_bytes());
-        }
-        text.push(b'\n');
+        poses::push_tum(text, stamp_ns, p.into(), [q.i, q.j, q.k, q.w]);
         flush(output, text, PIECE)
     }
 

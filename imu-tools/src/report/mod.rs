@@ -3,7 +3,8 @@
 //! [`table`] for a terminal, [`json`] for programs, [`yaml`] for Kalibr and [`formats`] for other
 //! filters, [`csv`] for plots of one's own, [`plot`] for pictures, [`html`] for the report, [`demo`]
 //! for the comparison of several with the truth. All write a [`Calibration`](crate::calibrate::Calibration) into text.
-//! [`tradeoff`] shows what accuracy costs, [`integration`] where dead reckoning went.
+//! [`tradeoff`] shows what accuracy costs, [`integration`] where dead reckoning went,
+//! [`spline`](mod@spline) how far a curve is from poses.
 
 pub mod csv;
 pub mod demo;
@@ -14,6 +15,7 @@ pub mod info;
 pub mod integration;
 pub mod json;
 pub mod plot;
+pub mod spline;
 pub mod table;
 pub mod tradeoff;
 mod units;

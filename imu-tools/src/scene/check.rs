@@ -1,7 +1,7 @@
 //! Whether the numbers of a scene can be, each under its key.
 
 use super::errors::{BandVibrationTerm, FlickerTerm, GaussMarkovTerm, Poles, VibrationTerm};
-use super::{ClockErrors, Scene, SensorErrors, Temperature};
+use super::{ClockErrors, Scene, SensorErrors, Temperature, trajectory};
 use crate::error::Error;
 
 /// Between the averaging times of a flicker; its eight processes reach 13⁷/16, 6.59 decades.
@@ -98,6 +98,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), Bad> {
         check_temperature(temperature)?;
     }
     check_stamps(scene)?;
+    trajectory::check(scene)?;
     sensor(&Table::GYROSCOPE, &scene.gyroscope, scene.temperature.is_some())?;
     sensor(&Table::ACCELEROMETER, &scene.accelerometer, scene.temperature.is_some())?;
     if scene.accelerometer.g_sensitivity != [[0.0; 3]; 3] {

@@ -41,6 +41,11 @@ impl Rate {
         1e6 / self.micro_hz as f64
     }
 
+    /// The offsets of samples 0, 1, 2, … from the first, ns.
+    pub fn offsets(self) -> impl Iterator<Item = i64> {
+        Ticks::new(self)
+    }
+
     /// Samples due in `[0, duration)`: 4 h at 200 Hz are 2 880 000.
     #[must_use]
     pub fn samples_in(self, duration_ns: u64) -> u64 {

@@ -5,11 +5,12 @@
 //! Numerical Integration, section 2.7). On the ellipse specific force is below 9000 m/s² for complex
 //! times up to 2 s off the real axis, so by Cauchy's bound that derivative is below 8!·9000/2⁸ =
 //! 1.4e6 m/s¹⁰, and the error below 4e-14 m/s²; of the rates, and of a lever arm of metres, below that.
+//! A curve through poses is smooth only between its knots: pieces end there, too.
 
 use imu_core::sensor::{Kinematics, LeverArm, Placement};
-use imu_core::trajectory::{Ellipse, Rest, Trajectory};
+use imu_core::trajectory::{Ellipse, Motion, Rest, Trajectory};
 
-use super::Path;
+use super::{Path, Scene};
 
 /// The longest piece of a quadrature, s.
 const LONGEST: f64 = 0.05;
@@ -71,32 +72,87 @@ impl Arms {
     }
 }
 
-impl Path {
-    fn kinematics(self, gravity: f64, t_ns: i64, offset_s: f64) -> Kinematics<f64> {
-        match self {
-            Self::Rest => Rest { gravity }.kinematics(t_ns, offset_s),
-            Self::Ellipse => Ellipse { gravity }.kinematics(t_ns, offset_s),
+/// A scene's motion as it is played: times are ns after the scene's start.
+#[derive(Debug)]
+pub(super) struct Played {
+    path: Path,
+    gravity: f64,
+    start_ns: i64,
+}
+
+impl Played {
+    pub(super) fn new(scene: &Scene) -> Self {
+        Self { path: scene.motion.clone(), gravity: scene.gravity, start_ns: scene.start_ns }
+    }
+
+    /// Whether nothing ever changes.
+    pub(super) fn is_still(&self) -> bool {
+        matches!(self.path, Path::Rest)
+    }
+
+    /// The motion `t_ns` after the start.
+    pub(super) fn motion(&self, t_ns: i64) -> Motion<f64> {
+        let gravity = self.gravity;
+        match &self.path {
+            Path::Rest => Rest { gravity }.at(t_ns),
+            Path::Ellipse => Ellipse { gravity }.at(t_ns),
+            Path::Along(route) => route.motion(gravity, self.start_ns.saturating_add(t_ns)),
+        }
+    }
+
+    fn kinematics(&self, t_ns: i64, offset_s: f64) -> Kinematics<f64> {
+        let gravity = self.gravity;
+        match &self.path {
+            Path::Rest => Rest { gravity }.kinematics(t_ns, offset_s),
+            Path::Ellipse => Ellipse { gravity }.kinematics(t_ns, offset_s),
+            Path::Along(route) => {
+                route.kinematics(gravity, self.start_ns.saturating_add(t_ns), offset_s)
+            }
         }
     }
 
     /// What is felt `t_ns` after the start.
-    pub(super) fn felt(self, gravity: f64, arms: &Arms, t_ns: i64) -> Felt {
-        arms.felt(&self.kinematics(gravity, t_ns, 0.0))
+    pub(super) fn felt(&self, arms: &Arms, t_ns: i64) -> Felt {
+        arms.felt(&self.kinematics(t_ns, 0.0))
     }
 
     /// The mean of what is felt over the `dt` seconds before.
-    pub(super) fn mean_felt(self, gravity: f64, arms: &Arms, t_ns: i64, dt: f64) -> Felt {
-        let pieces = (dt / LONGEST).ceil().max(1.0);
-        let half = 0.5 * dt / pieces;
+    pub(super) fn mean_felt(&self, arms: &Arms, t_ns: i64, dt: f64) -> Felt {
         let mut sum = Felt::default();
-        for piece in 0..pieces as u64 {
-            let middle = (2 * piece + 1) as f64 * half - dt;
-            for (point, weight) in GAUSS {
-                let felt = arms.felt(&self.kinematics(gravity, t_ns, middle + half * point));
-                sum.add(&felt, 0.5 * weight / pieces);
+        let mut from = -dt;
+        for to in self.knots(t_ns, dt).chain([0.0]) {
+            let pieces = ((to - from) / LONGEST).ceil().max(1.0);
+            let half = 0.5 * (to - from) / pieces;
+            for piece in 0..pieces as u64 {
+                let middle = (2 * piece + 1) as f64 * half + from;
+                for (point, weight) in GAUSS {
+                    let felt = arms.felt(&self.kinematics(t_ns, middle + half * point));
+                    sum.add(&felt, weight * half / dt);
+                }
             }
+            from = to;
         }
         sum
+    }
+
+    /// Where the motion is not smooth within the `dt` seconds before `t_ns`: seconds, below zero.
+    fn knots(&self, t_ns: i64, dt: f64) -> impl Iterator<Item = f64> + use<> {
+        let knots = match &self.path {
+            Path::Along(route) => Some(*route.knots()),
+            Path::Rest | Path::Ellipse => None,
+        };
+        let start_ns = self.start_ns;
+        let step_ns = knots.map_or(0, |knots| i64::from(knots.step_ns()));
+        // ns since the last knot at or before the end.
+        let since = knots.map_or(0, |knots| {
+            let elapsed = i128::from(start_ns) + i128::from(t_ns) - i128::from(knots.start_ns());
+            elapsed.rem_euclid(i128::from(step_ns)) as i64
+        });
+        let count = if step_ns > 0 { 1e9 * dt / step_ns as f64 + 1.0 } else { 0.0 };
+        let at = (0..count.ceil() as i64).map(move |k| -1e-9 * (since + k * step_ns) as f64);
+        // Knots at the ends, but for rounding, divide nothing; the first come first.
+        let within: Vec<f64> = at.filter(|at| *at < -1e-10 && *at > 1e-10 - dt).collect();
+        within.into_iter().rev()
     }
 }
 
@@ -117,6 +173,10 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn ellipse() -> Played {
+        Played::new(&Scene { motion: Path::Ellipse, ..Scene::default() })
+    }
+
     fn arms() -> Arms {
         Arms::new([0.1, -0.2, 0.3], [-0.5, 0.4, 1.0])
     }
@@ -136,11 +196,11 @@ mod tests {
         fn means_add_up(t_ns in 0_i64..60_000_000_000, dt_ms in 1_i64..400, parts in 2_i64..9) {
             let dt_ns = dt_ms * 1_000_000 * parts;
             let dt = dt_ns as f64 / 1e9;
-            let whole = Path::Ellipse.mean_felt(9.81, &arms(), t_ns, dt);
+            let whole = ellipse().mean_felt(&arms(), t_ns, dt);
             let mut sum = Felt::default();
             for part in 0..parts {
                 let end = t_ns - part * dt_ms * 1_000_000;
-                let felt = Path::Ellipse.mean_felt(9.81, &arms(), end, dt / parts as f64);
+                let felt = ellipse().mean_felt(&arms(), end, dt / parts as f64);
                 sum.add(&felt, 1.0 / parts as f64);
             }
             for (whole, sum) in all(&whole).into_iter().zip(all(&sum)) {
@@ -152,8 +212,8 @@ mod tests {
         /// derivative, below 200: 1e-5 at 1 ms.
         #[test]
         fn a_short_mean_is_its_middle(t_ns in 0_i64..60_000_000_000) {
-            let mean = Path::Ellipse.mean_felt(9.81, &arms(), t_ns + 500_000, 1e-3);
-            let middle = Path::Ellipse.felt(9.81, &arms(), t_ns);
+            let mean = ellipse().mean_felt(&arms(), t_ns + 500_000, 1e-3);
+            let middle = ellipse().felt(&arms(), t_ns);
             for (mean, middle) in all(&mean).into_iter().zip(all(&middle)) {
                 prop_assert!((mean - middle).abs() < 1e-5);
             }

@@ -2,7 +2,7 @@
 //!
 //! What each key means, its unit and its default: `docs/scenes.md`. The keys of a sensor are the fields
 //! of [`SensorErrors`], those of `[clock]` and `[temperature]` the fields of [`ClockErrors`] and
-//! [`Temperature`].
+//! [`Temperature`]. A `trajectory` is read from beside the file.
 //!
 //! ```
 //! use imu_tools::scene::{Path, Scene};
@@ -24,6 +24,7 @@ use serde::de::{self, Deserializer, Visitor};
 
 use super::check::{self, Bad};
 use super::located::{impossible, refused};
+use super::trajectory::{Instead, Own};
 use super::{ClockErrors, Path, Rate, Scene, SensorErrors, Temperature, parse_duration};
 use crate::error::Error;
 use crate::recording::SampleKind;
@@ -37,6 +38,7 @@ struct File {
     seed: Option<u64>,
     start_ns: Option<i64>,
     motion: Option<Path>,
+    trajectory: Option<Own>,
     gravity: Option<f64>,
     samples: Option<SampleKind>,
     temperature: Option<Temperature>,
@@ -87,18 +89,48 @@ impl Scene {
     /// One sentence naming `name` (the file), the line and the key: for bad TOML, an unknown key, or
     /// a value that cannot be.
     pub fn from_toml(text: &str, name: &str) -> Result<Self, Error> {
+        Self::from_toml_with(text, name, &Instead::default())
+    }
+
+    /// The same, with some of its values given in the place of the file's.
+    ///
+    /// # Errors
+    /// As of [`Scene::from_toml`].
+    pub fn from_toml_with(text: &str, name: &str, instead: &Instead) -> Result<Self, Error> {
         let file: File = toml::from_str(text).map_err(|error| refused(text, name, &error))?;
-        let base = Self::default();
-        let rate = file.rate_hz.map_or(Ok(base.rate), Rate::from_hz);
+        let ideal = Self::default();
+        let rate = file.rate_hz.map_or(Ok(ideal.rate), Rate::from_hz);
+        let bad =
+            |key: &str, error: Error| impossible(text, name, Bad::new(key, error.to_string()));
+        let rate = rate.map_err(|error| bad("rate_hz", error))?;
+        let rate = instead.rate.unwrap_or(rate);
+        let samples = instead.samples.or(file.samples).unwrap_or(ideal.samples);
+        let base = match (&file.trajectory, &file.motion) {
+            (Some(_), Some(_)) => {
+                return Err(bad("motion", Error::usage("give a motion or a trajectory, not both")));
+            }
+            (Some(own), None) => {
+                let route = own.route(name).map_err(|error| bad("trajectory", error))?;
+                Self::along(route, rate, samples)
+            }
+            (None, motion) => Self { motion: motion.clone().unwrap_or(Path::Rest), ..ideal },
+        };
+        let start_ns = file.start_ns.unwrap_or(base.start_ns);
+        // All that is left of a trajectory.
+        let later = start_ns.saturating_sub(base.start_ns);
+        let rest_ns = match base.motion {
+            Path::Along(_) => base.duration_ns.saturating_sub(u64::try_from(later).unwrap_or(0)),
+            Path::Rest | Path::Ellipse => base.duration_ns,
+        };
+        let given_ns = instead.duration_ns.or(file.duration.map(|Length(ns)| ns));
         let scene = Self {
-            motion: file.motion.unwrap_or(base.motion),
+            motion: base.motion,
             gravity: file.gravity.unwrap_or(base.gravity),
-            rate: rate
-                .map_err(|error| impossible(text, name, Bad::new("rate_hz", error.to_string())))?,
-            duration_ns: file.duration.map_or(base.duration_ns, |Length(ns)| ns),
+            rate,
+            duration_ns: given_ns.unwrap_or(rest_ns),
             seed: file.seed.unwrap_or(base.seed),
-            start_ns: file.start_ns.unwrap_or(base.start_ns),
-            samples: file.samples.unwrap_or(base.samples),
+            start_ns,
+            samples,
             temperature: file.temperature,
             clock: file.clock,
             gyroscope: file.gyroscope,

@@ -1,18 +1,17 @@
 //! What both sensors feel, laid into blocks: by the cheapest of the ways that a scene allows.
 
-use imu_core::trajectory::{Ellipse, Motion, Rest, Trajectory};
+use imu_core::trajectory::Motion;
 
+use super::Scene;
 use super::error_term::{Contributions, ErrorTerm};
-use super::felt::{Arms, Felt};
+use super::felt::{Arms, Felt, Played};
 use super::mount::{Mount, Steps};
-use super::{Path, Scene};
 use crate::recording::{Block, Sample, SampleKind};
 
 /// A scene's motion, seen by its sensors.
 #[derive(Debug)]
 pub(super) struct Layer {
-    path: Path,
-    gravity: f64,
+    played: Played,
     arms: Arms,
     /// The interval of means, s; `None` at instants.
     mean_s: Option<f64>,
@@ -24,8 +23,7 @@ impl Layer {
     pub(super) fn new(scene: &Scene) -> Self {
         let mean = scene.samples != SampleKind::Instantaneous;
         Self {
-            path: scene.motion,
-            gravity: scene.gravity,
+            played: Played::new(scene),
             arms: Arms::new(scene.gyroscope.lever_arm_m, scene.accelerometer.lever_arm_m),
             mean_s: mean.then(|| scene.rate.interval_s()),
             gyroscope: Mount::new(&scene.gyroscope),
@@ -40,19 +38,14 @@ impl Layer {
 
     /// The motion `t_ns` after the start.
     pub(super) fn motion(&self, t_ns: i64) -> Motion<f64> {
-        match self.path {
-            Path::Rest => Rest { gravity: self.gravity }.at(t_ns),
-            Path::Ellipse => Ellipse { gravity: self.gravity }.at(t_ns),
-        }
+        self.played.motion(t_ns)
     }
 
     fn felt(&self, t_ns: i64) -> Felt {
         match self.mean_s {
             // At rest a mean is the instant, to the bit.
-            Some(dt) if self.path != Path::Rest => {
-                self.path.mean_felt(self.gravity, &self.arms, t_ns, dt)
-            }
-            _ => self.path.felt(self.gravity, &self.arms, t_ns),
+            Some(dt) if !self.played.is_still() => self.played.mean_felt(&self.arms, t_ns, dt),
+            _ => self.played.felt(&self.arms, t_ns),
         }
     }
 
@@ -70,7 +63,7 @@ impl Layer {
             block.accelerometer.push(Sample { stamp_ns, value: force });
         };
         let ideal = self.gyroscope.is_ideal() && self.accelerometer.is_ideal();
-        if self.path == Path::Rest {
+        if self.played.is_still() {
             let still = self.read(0);
             offsets.for_each(|offset_ns| push(offset_ns, still));
         } else if ideal && self.arms.are_zero() && self.mean_s.is_none() {

@@ -35,6 +35,7 @@ mod simulator;
 mod stamps;
 mod temperature;
 mod terms_file;
+mod trajectory;
 mod truth;
 
 pub use axes::Axes;
@@ -48,12 +49,16 @@ pub use simulator::{Simulator, Truth};
 pub use stamps::ClockErrors;
 pub use temperature::Temperature;
 pub use terms_file::TermsWriter;
+pub use trajectory::Instead;
 pub use truth::TruthWriter;
+
+use std::sync::Arc;
 
 use imu_core::trajectory::GRAVITY;
 use serde::Deserialize;
 
 use crate::recording::SampleKind;
+use crate::spline::Route;
 
 /// The stamp of the first sample if nothing else is asked for: 1 600 000 000 s after the Unix epoch
 /// (13 September 2020, 12:26:40 UTC), a constant so that the same scene gives the same bytes.
@@ -109,13 +114,16 @@ impl Default for Scene {
 }
 
 /// A true motion.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(rename_all = "lowercase")]
 pub enum Path {
     /// Standing still and level at the origin.
     Rest,
     /// The classic ellipse ([`imu_core::trajectory::Ellipse`]).
     Ellipse,
+    /// A curve through a user's poses; true times are those of its poses.
+    #[serde(skip)]
+    Along(Arc<Route>),
 }
 
 /// The three noise levels of the course program `vio_data_simulation`.

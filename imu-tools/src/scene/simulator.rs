@@ -52,6 +52,7 @@ pub struct Simulator {
     gyroscope: [Chain; 3],
     accelerometer: [Chain; 3],
     keep_terms: bool,
+    notes: Vec<Note>,
     truth: Truth,
     stamps: Vec<i64>,
     lost: Vec<bool>,
@@ -86,6 +87,7 @@ impl Simulator {
             gyroscope: chains(Sensor::GYROSCOPE, &scene.gyroscope, rate)?,
             accelerometer: chains(Sensor::ACCELEROMETER, &scene.accelerometer, force)?,
             keep_terms: false,
+            notes: scene.motion.notes().to_vec(),
             truth: Truth::default(),
             stamps: Vec::new(),
             lost: Vec::new(),
@@ -269,7 +271,7 @@ impl Source for Simulator {
     }
 
     fn take_notes(&mut self) -> Vec<Note> {
-        Vec::new()
+        std::mem::take(&mut self.notes)
     }
 
     /// Zero: a simulation reads no file.

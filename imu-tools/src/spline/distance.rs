@@ -33,12 +33,9 @@ impl Distance {
         let begin = knots.start_ns();
         let (mut position, mut rotation) = (Largest::at(begin), Largest::at(begin));
         for TimedPose { stamp_ns, pose } in poses {
-            let there = curve.pose(*stamp_ns)?;
-            let [x, y, z] = (there.translation() - pose.translation()).into();
-            position.add(x.hypot(y).hypot(z), *stamp_ns);
-            let turn = so3::product(&so3::inverse(&there.rotation()), &pose.rotation());
-            let [x, y, z] = so3::log(&turn).into();
-            rotation.add(x.hypot(y).hypot(z), *stamp_ns);
+            let (metres, radians) = between(&curve.pose(*stamp_ns)?, pose);
+            position.add(metres, *stamp_ns);
+            rotation.add(radians, *stamp_ns);
         }
         let rms = |sum: f64| (sum / poses.len() as f64).sqrt();
         Ok(Self {
@@ -50,6 +47,13 @@ impl Distance {
             largest_rotation_at_ns: rotation.at_ns,
         })
     }
+}
+
+/// From one pose to another: m, and rad.
+pub(super) fn between(a: &Pose<f64>, b: &Pose<f64>) -> (f64, f64) {
+    let length = |[x, y, z]: [f64; 3]| x.hypot(y).hypot(z);
+    let turn = so3::product(&so3::inverse(&a.rotation()), &b.rotation());
+    (length((b.translation() - a.translation()).into()), length(so3::log(&turn).into()))
 }
 
 /// The largest of some distances, and the sum of their squares.

@@ -23,14 +23,29 @@
 //! # Ok::<(), imu_core::Error>(())
 //! ```
 
+pub mod asked;
 mod banded;
+mod choices;
 mod distance;
+pub mod file;
+mod fitted;
 mod jitter;
 mod least_squares;
+mod order;
+mod outline;
+mod poses;
+mod route;
+pub mod sampled;
 mod spacing;
 
+pub use choices::{Choice, choices};
 pub use distance::Distance;
+pub use fitted::Fitted;
 pub use jitter::{Jitter, JitterOfCurve};
+pub use order::mean_vertical;
+pub use outline::Outline;
+pub use poses::Given;
+pub use route::Route;
 pub use spacing::Spacing;
 
 use imu_core::nalgebra::Vector3;

@@ -3,6 +3,7 @@
 mod table;
 mod topic;
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::{Note, ReadOptions};
@@ -26,6 +27,26 @@ pub struct Pose {
     pub velocity: Option<[f64; 3]>,
     /// What gyroscope (rad/s) and accelerometer (m/s²) read too much, where the table has it.
     pub bias: Option<([f64; 3], [f64; 3])>,
+}
+
+impl Pose {
+    /// Of its quaternion.
+    pub(crate) fn length(&self) -> f64 {
+        self.orientation.iter().map(|q| q * q).sum::<f64>().sqrt()
+    }
+
+    /// What may be wrong with a row of which the orientation is no rotation; the end of a sentence.
+    #[must_use]
+    pub fn hint(&self) -> &'static str {
+        let ([x, y, z], [qx, ..]) = (self.position, self.orientation);
+        let length = [x, y, z, qx].iter().map(|q| q * q).sum::<f64>().sqrt();
+        if (length - 1.0).abs() < 1e-3 {
+            ", but that of columns 2 to 5 is: position and rotation are swapped, and TUM's order is timestamp tx ty tz \
+             qx qy qz qw"
+        } else {
+            ": TUM's order is timestamp tx ty tz qx qy qz qw"
+        }
+    }
 }
 
 /// Which of a recording's topics of poses is wanted: `geometry_msgs/PoseStamped`,
@@ -79,6 +100,15 @@ impl Poses {
         }
     }
 
+    /// The line of the last pose, from 1; none of a topic.
+    #[must_use]
+    pub fn line(&self) -> Option<u64> {
+        match &self.0 {
+            Origin::Table(table) => Some(table.line()),
+            Origin::Topic(_) => None,
+        }
+    }
+
     /// Reads what is left of a recording, and takes what there is to tell of it; a table has nothing to tell.
     ///
     /// # Errors
@@ -89,6 +119,22 @@ impl Poses {
             Origin::Topic(topic) => topic.finish(),
         }
     }
+}
+
+/// The first line of TUM's format.
+pub(crate) const TUM_HEADER: &str = "# timestamp tx ty tz qx qy qz qw\n";
+
+/// Appends a line of TUM's format: seconds with nine decimals, x y z, qx qy qz qw.
+pub(crate) fn push_tum(text: &mut Vec<u8>, stamp_ns: i64, position: [f64; 3], xyzw: [f64; 4]) {
+    let (sign, size) = (if stamp_ns < 0 { "-" } else { "" }, stamp_ns.unsigned_abs());
+    // Writing to memory cannot fail.
+    let _ = write!(text, "{sign}{}.{:09}", size / 1_000_000_000, size % 1_000_000_000);
+    let mut digits = zmij::Buffer::new();
+    for number in position.iter().chain(&xyzw) {
+        text.push(b' ');
+        text.extend_from_slice(digits.format(*number).as_bytes());
+    }
+    text.push(b'\n');
 }
 
 /// The truth that stands beside a recording: `NAME.truth.csv` or `NAME.truth.tum` beside `NAME.bag` and the like, EuRoC's

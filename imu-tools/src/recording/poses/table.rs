@@ -93,9 +93,15 @@ impl Format {
 
     /// TUM's: eight numbers, the last four of them a rotation.
     fn plain(row: &[u8]) -> Option<Self> {
-        let dialect = Dialect::of(row);
-        let format = Self {
-            dialect,
+        let format = Self::of_tum(row);
+        let pose = format.pose(row)?;
+        // Six decimals are the least that such files have.
+        (format.is_eight(row) && (pose.length() - 1.0).abs() < 1e-3).then_some(format)
+    }
+
+    fn of_tum(row: &[u8]) -> Self {
+        Self {
+            dialect: Dialect::of(row),
             exponent: 9,
             time: 0,
             position: [1, 2, 3],
@@ -104,11 +110,28 @@ impl Format {
             bias: None,
             unstamped: false,
             imu: false,
-        };
-        let pose = format.pose(row)?;
-        let length = pose.orientation.iter().map(|q| q * q).sum::<f64>().sqrt();
-        // Six decimals are the least that such files have.
-        (dialect.fields(row).count() == 8 && (length - 1.0).abs() < 1e-3).then_some(format)
+        }
+    }
+
+    fn is_eight(&self, row: &[u8]) -> bool {
+        self.dialect.fields(row).count() == 8
+    }
+
+    /// Why a table of eight numbers is none of poses; the end of a sentence.
+    fn why_not(start: &[u8]) -> String {
+        let lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
+        let rows = lines.filter_map(|line| {
+            let format = Self::of_tum(line);
+            format.pose(line).filter(|_| format.is_eight(line))
+        });
+        let bad = rows.take(1).find(|pose| pose.length().is_finite());
+        bad.map_or(String::new(), |pose| {
+            format!(
+                "; the last four numbers of a row have the length {:.6}, no rotation's{}",
+                pose.length(),
+                pose.hint()
+            )
+        })
     }
 
     fn pose(&self, row: &[u8]) -> Option<Pose> {
@@ -156,11 +179,17 @@ impl Table {
         input.fill(AHEAD)?;
         let format = Format::of(input.at_hand()).ok_or_else(|| {
             Error::data(format!(
-                "{} holds no poses as TUM or EuRoC write them",
-                input.path().display()
+                "{} holds no poses as TUM or EuRoC write them{}",
+                input.path().display(),
+                Format::why_not(input.at_hand())
             ))
         })?;
         Ok(Self { input, format, line: 0 })
+    }
+
+    /// The line of the last pose, from 1.
+    pub fn line(&self) -> u64 {
+        self.line
     }
 
     /// The next pose; `None` at the end, which a row that is cut off is as well.

@@ -18,6 +18,7 @@
 
 mod allan;
 mod chart;
+mod curve;
 mod integration;
 mod png;
 mod residual;
@@ -28,6 +29,7 @@ mod tradeoff;
 
 pub use allan::allan;
 pub(super) use allan::lowest;
+pub use curve::{curve, curve_residual};
 pub use integration::{errors, trajectory};
 pub use residual::residual;
 pub use signal::signal;

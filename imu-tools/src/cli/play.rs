@@ -1,0 +1,145 @@
+//! Playing a scene into files: shared by every subcommand that simulates.
+
+use std::path::Path;
+
+use super::{progress, same_target};
+use crate::error::Error;
+use crate::recording::{self, Block, Contents, Format, Note, SampleKind, Sink, Source as _};
+use crate::scene::{Scene, Simulator, TermsWriter, TruthWriter};
+
+/// Where a scene goes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Targets<'a> {
+    pub(super) output: &'a Path,
+    pub(super) format: Option<Format>,
+    pub(super) truth: Option<&'a Path>,
+    pub(super) terms: Option<&'a Path>,
+}
+
+/// What was written.
+pub(super) struct Played {
+    /// Samples of each sensor.
+    pub(super) samples: u64,
+    /// Those that were due besides.
+    pub(super) lost: u64,
+}
+
+impl Targets<'_> {
+    /// That no file is to be written twice, nor over what is read, which is called so.
+    pub(super) fn check(&self, read: Option<(&Path, &str)>) -> Result<(), Error> {
+        let targets =
+            [(Some(self.output), "recording"), (self.truth, "truth"), (self.terms, "terms")];
+        let targets: Vec<(&Path, &str)> =
+            targets.into_iter().filter_map(|(path, what)| Some((path?, what))).collect();
+        for (i, (path, what)) in targets.iter().enumerate() {
+            let same = |(other, _): &&(&Path, &str)| same_target(path, other);
+            if let Some((_, before)) = targets[..i].iter().find(same) {
+                return Err(Error::usage(format!(
+                    "the {before} and the {what} cannot both go to {}: name two files",
+                    path.display()
+                )));
+            }
+            if let Some((_, what)) = read.filter(|(file, _)| same_target(path, file)) {
+                return Err(Error::usage(format!(
+                    "{} is {what}: name another file to write",
+                    path.display()
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Plays a scene to its end, and tells what there is to tell.
+    pub(super) fn play(&self, scene: &Scene) -> Result<Played, Error> {
+        let mut simulator = Simulator::new(scene)?;
+        let format = self.format.map_or_else(|| Format::of(self.output), Ok)?;
+        let contents =
+            Contents { samples: scene.samples, temperature: scene.temperature.is_some() };
+        let mut files = Files {
+            sink: recording::create_with(self.output, format, contents)?,
+            truth: self.truth.map(|path| TruthWriter::create(path, scene)).transpose()?,
+            terms: self.terms.map(|path| TermsWriter::create(path, scene)).transpose()?,
+        };
+        say_notes(&simulator.take_notes());
+        let due = simulator.samples_left();
+        let lost = files.write(&mut simulator)?;
+        files.finish()?;
+        if let Some(unsaid) = unsaid(format, contents) {
+            super::say(&format!("imu: {}: {unsaid}", super::target_name(self.output)));
+        }
+        Ok(Played { samples: due - lost, lost })
+    }
+}
+
+/// Says remarks, and warnings as such.
+pub(super) fn say_notes(notes: &[Note]) {
+    for note in notes {
+        match note {
+            Note::Info(remark) => super::say(&format!("imu: {remark}")),
+            Note::Warning(warning) => super::say(&format!("imu: warning: {warning}")),
+        }
+    }
+}
+
+/// What a recording of this format cannot say of its contents.
+fn unsaid(format: Format, contents: Contents) -> Option<String> {
+    let Contents { samples, temperature } = contents;
+    let kind = match (format, samples) {
+        (_, SampleKind::Instantaneous) | (Format::Csv | Format::Euroc, _) => None,
+        (Format::Bag | Format::Mcap, _) => Some(format!(
+            "this format has no place for the kind of its samples; they are {}",
+            samples.meaning()
+        )),
+    };
+    let temperature = (temperature && format != Format::Csv)
+        .then(|| "the temperature is not in it; a .csv has a column for it".to_owned());
+    let all: Vec<String> = kind.into_iter().chain(temperature).collect();
+    (!all.is_empty()).then(|| all.join("; "))
+}
+
+/// Everything that is being written.
+struct Files {
+    sink: Box<dyn Sink>,
+    truth: Option<TruthWriter>,
+    terms: Option<TermsWriter>,
+}
+
+impl Files {
+    /// Plays the scene to its end; how many of its samples were lost.
+    fn write(&mut self, simulator: &mut Simulator) -> Result<u64, Error> {
+        let due = simulator.samples_left();
+        let bar = progress::bar(due, "simulating");
+        if self.terms.is_some() {
+            simulator.keep_terms();
+        }
+        let (mut block, mut written) = (Block::default(), 0);
+        loop {
+            if self.truth.is_some() || self.terms.is_some() {
+                let Some(truth) = simulator.advance_with_truth(&mut block) else { break };
+                if let Some(writer) = &mut self.truth {
+                    writer.write(truth)?;
+                }
+                if let Some(writer) = &mut self.terms {
+                    writer.write(truth)?;
+                }
+            } else if !simulator.advance(&mut block) {
+                break;
+            }
+            self.sink.write_block(&block)?;
+            written += block.gyroscope.len() as u64;
+            bar.set_position(due - simulator.samples_left());
+        }
+        Ok(due - written)
+    }
+
+    fn finish(self) -> Result<(), Error> {
+        self.sink.finish()?;
+        if let Some(truth) = self.truth {
+            truth.finish()?;
+        }
+        if let Some(terms) = self.terms {
+            terms.finish()?;
+        }
+        Ok(())
+    }
+}

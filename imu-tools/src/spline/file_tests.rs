@@ -1,0 +1,66 @@
+use super::*;
+use crate::spline::{Options, Spacing, TimedPose, fit};
+use imu_core::so3;
+
+/// Attitudes all over the sphere.
+fn fitted() -> Fit {
+    let poses: Vec<_> = (0..3000_i64)
+        .map(|k| {
+            let t = k as f64;
+            let turn = Vector3::new((0.37 * t).sin(), (0.23 * t).cos(), 1.3 * (0.11 * t).sin());
+            let place = Vector3::new(0.1 * t, (0.2 * t).sin() / 3.0, -1e-9 * t);
+            let pose = Pose::new(so3::exp(turn), place).unwrap();
+            TimedPose { stamp_ns: 1_403_715_273_262_140_000 + 50_000_000 * k, pose }
+        })
+        .collect();
+    fit(&poses, &Options { spacing: Spacing::AsPoses, ..Options::default() }).unwrap()
+}
+
+#[test]
+fn a_curve_is_read_as_it_was_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.spline");
+    let fit = fitted();
+    write(&path, &fit).unwrap().finish().unwrap();
+    let route = read(&path).unwrap().unwrap();
+    assert_eq!((route.form(), route.knots()), (fit.form, &fit.knots));
+    let settled: Vec<_> = fit.control.iter().copied().map(settled).collect();
+    for ((read, a), b) in route.control().zip(&settled).zip(&fit.control) {
+        assert_eq!(read, *a);
+        // Seven steps of the largest component at most.
+        assert!((a.rotation().coords - b.rotation().coords).abs().max() <= 7.8e-16);
+    }
+}
+
+#[test]
+fn what_is_no_curve_is_refused_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.spline");
+    write(&path, &fitted()).unwrap().finish().unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let changed = |line: usize, to: &str| {
+        let mut lines = lines.clone();
+        lines[line] = to;
+        lines.join("\n")
+    };
+    for (text, words) in [
+        (changed(0, "# imu spline 2: x"), "line 1: a curve of another version"),
+        (changed(1, "# form: odd"), "line 2: the form of a curve is plain or symmetric"),
+        (changed(2, "# start: 5"), "line 3: here a curve has a line `# start_ns: …`"),
+        (changed(3, "# step_ns: 5e7"), "line 4: step_ns is a whole number"),
+        (changed(4, "x,y,z"), "line 5: the columns are c_x [m]"),
+        (changed(9, "1,2,3,1,0,0"), "line 10: this is no control point"),
+        (changed(9, "1,2,nan,1,0,0,0"), "line 10: this is no control point"),
+        (changed(9, "1,2,3,0.9,0,0,0"), "line 10: this is no control point"),
+        (lines[..8].join("\n"), "make no curve: fewer than four"),
+        (lines[..1].join("\n"), "line 2: here a curve has a line `# form"),
+    ] {
+        std::fs::write(&path, text).unwrap();
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains(words), "{words}: {error}");
+    }
+    std::fs::write(&path, "# timestamp tx").unwrap();
+    assert!(read(&path).unwrap().is_none());
+    assert!(read(folder.path()).unwrap().is_none());
+}

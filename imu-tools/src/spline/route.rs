@@ -1,0 +1,144 @@
+//! A curve of poses with its logarithms cached: what an IMU can follow.
+
+use std::path::Path;
+
+use imu_core::Error as CoreError;
+use imu_core::se3::Pose;
+use imu_core::sensor::Kinematics;
+use imu_core::spline::{Full, Knot, Knots, SplitSpline, SymmetricSplitSpline, cache};
+use imu_core::trajectory::{AlongSpline, Motion, Trajectory};
+
+use super::fitted::no_curve;
+use super::{Fit, FormName, Given, Options, file, fit};
+use crate::error::Error;
+use crate::recording::Note;
+
+/// A curve, and what there is to tell of where it comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Route {
+    form: FormName,
+    knots: Knots<f64>,
+    cached: Vec<Knot<f64>>,
+    notes: Vec<Note>,
+}
+
+impl Route {
+    /// Of control poses: one for every knot.
+    ///
+    /// # Errors
+    /// As of [`cache`].
+    pub fn new(
+        form: FormName,
+        knots: Knots<f64>,
+        control: &[Pose<f64>],
+        notes: Vec<Note>,
+    ) -> Result<Self, CoreError> {
+        if knots.count() != control.len() {
+            return Err(CoreError::OutOfRange("knots"));
+        }
+        let mut cached = vec![Knot::default(); control.len()];
+        cache(control, &mut cached)?;
+        Ok(Self { form, knots, cached, notes })
+    }
+
+    /// The curve in a file of `imu spline fit`, as it stands there, or one that is fitted to the poses in it.
+    ///
+    /// # Errors
+    /// When the file cannot be read or no curve comes of it, in one sentence.
+    pub fn open(path: &Path, options: &Options) -> Result<Self, Error> {
+        if let Some(route) = file::read(path)? {
+            return Ok(route);
+        }
+        let given = Given::read(path)?;
+        let fit = fit(&given.poses, options).map_err(|error| no_curve(path, error))?;
+        let mut notes = given.notes;
+        notes.push(Note::Info(told(&fit, given.poses.len())));
+        // As a file of it would be read.
+        let control: Vec<_> = fit.control.iter().copied().map(file::settled).collect();
+        Self::new(fit.form, fit.knots, &control, notes).map_err(|error| no_curve(path, error))
+    }
+
+    /// Which curve it is.
+    #[must_use]
+    pub fn form(&self) -> FormName {
+        self.form
+    }
+
+    /// When its control points are.
+    #[must_use]
+    pub fn knots(&self) -> &Knots<f64> {
+        &self.knots
+    }
+
+    /// Its control points.
+    pub fn control(&self) -> impl Iterator<Item = Pose<f64>> {
+        self.cached.iter().map(Knot::pose)
+    }
+
+    /// What there is to tell of its poses and of the fit.
+    #[must_use]
+    pub fn notes(&self) -> &[Note] {
+        &self.notes
+    }
+
+    /// Pose, velocities and accelerations.
+    ///
+    /// # Errors
+    /// [`OutOfRange`](CoreError::OutOfRange), naming `t_ns`, outside the span of its knots.
+    pub fn full(&self, t_ns: i64) -> Result<Full<f64>, CoreError> {
+        let (start_ns, step_ns) = (self.knots.start_ns(), self.knots.step_ns());
+        match self.form {
+            FormName::Plain => SplitSpline::new(start_ns, step_ns, &self.cached)?.full(t_ns),
+            FormName::Symmetric => {
+                SymmetricSplitSpline::new(start_ns, step_ns, &self.cached)?.full(t_ns)
+            }
+        }
+    }
+
+    /// Asks the motion along it, under this gravity in m/s².
+    fn ask<R>(&self, gravity: f64, question: impl FnOnce(&dyn Trajectory<f64>) -> R) -> R {
+        const CHECKED: &str = "knots that were made before can be made again";
+        let (start_ns, step_ns) = (self.knots.start_ns(), self.knots.step_ns());
+        match self.form {
+            FormName::Plain => {
+                let curve = SplitSpline::new(start_ns, step_ns, &self.cached).expect(CHECKED);
+                question(&AlongSpline { curve, gravity })
+            }
+            FormName::Symmetric => {
+                let curve =
+                    SymmetricSplitSpline::new(start_ns, step_ns, &self.cached).expect(CHECKED);
+                question(&AlongSpline { curve, gravity })
+            }
+        }
+    }
+
+    /// The motion at an instant of the poses' clock; every number is NaN outside the span.
+    #[must_use]
+    pub fn motion(&self, gravity: f64, t_ns: i64) -> Motion<f64> {
+        self.ask(gravity, |along| along.at(t_ns))
+    }
+
+    /// What an ideal sensor feels `offset_s` after an instant of the poses' clock.
+    #[must_use]
+    pub fn kinematics(&self, gravity: f64, t_ns: i64, offset_s: f64) -> Kinematics<f64> {
+        self.ask(gravity, |along| along.kinematics(t_ns, offset_s))
+    }
+}
+
+/// What there is to tell of a fit in one sentence.
+fn told(fit: &Fit, poses: usize) -> String {
+    let distance = &fit.error;
+    let noise = fit.jitter.map_or(String::new(), |jitter| {
+        format!(
+            "; what the poses jitter makes {:.2e} m/s² and {:.2e} rad/s rms an axis of it",
+            jitter.acceleration, jitter.angular_rate
+        )
+    });
+    format!(
+        "a {} curve with knots {} s apart through {poses} poses, {:.2e} m and {:.2e}° rms from them{noise}",
+        fit.form.name(),
+        f64::from(fit.knots.step_ns()) / 1e9,
+        distance.rms_position_m,
+        distance.rms_rotation_rad.to_degrees(),
+    )
+}
