@@ -2,9 +2,11 @@
 
 pub mod allan_bands;
 pub mod bags;
+pub mod closure;
 pub mod command;
 pub mod databases;
 pub mod disturbed;
+pub mod flights;
 pub mod mcaps;
 pub mod monte_carlo;
 pub mod recordings;
