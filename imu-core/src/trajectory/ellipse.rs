@@ -5,11 +5,12 @@
 //! `vio_data_simulation` (He & Gao, 2019), whose own constants are single precision: its files
 //! differ from this by up to 3.5e-6 m and 1.7e-5 m/s² in 20 s.
 
-use super::{GRAVITY, Motion, Trajectory};
+use super::waves::about_axes;
+use super::{GRAVITY, Motion, Trajectory, sin_cos};
 use crate::Real;
 use crate::sensor::Kinematics;
 use core::f64::consts::PI;
-use nalgebra::{Matrix3, Quaternion, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 /// The classic ellipse, one round in 20 s, starting at (20, 5, 5) m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,26 +101,10 @@ fn angular_acceleration(t: f64) -> Vector3<f64> {
     )
 }
 
-/// The quaternion of Rz(yaw) Ry(pitch) Rx(roll).
-fn about_axes(roll: f64, pitch: f64, yaw: f64) -> Quaternion<f64> {
-    let ((sr, cr), (sp, cp)) = (sin_cos(0.5 * roll), sin_cos(0.5 * pitch));
-    let (sy, cy) = sin_cos(0.5 * yaw);
-    Quaternion::new(
-        cy * cp * cr + sy * sp * sr,
-        cy * cp * sr - sy * sp * cr,
-        cy * sp * cr + sy * cp * sr,
-        sy * cp * cr - cy * sp * sr,
-    )
-}
-
-/// The one definition of [`Real`], also where the standard library offers its own.
-fn sin_cos(angle: f64) -> (f64, f64) {
-    Real::sin_cos(angle)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Quaternion;
     use proptest::prelude::*;
 
     fn at(t_ns: i64) -> Motion<f64> {

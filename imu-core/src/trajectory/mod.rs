@@ -12,12 +12,19 @@
 //! ```
 
 mod along_spline;
+mod coning;
 mod ellipse;
+mod gait;
 mod rest;
+mod spin;
+mod waves;
 
 pub use along_spline::AlongSpline;
+pub use coning::Coning;
 pub use ellipse::Ellipse;
+pub use gait::Gait;
 pub use rest::Rest;
+pub use spin::Spin;
 
 use crate::Real;
 use crate::sensor::Kinematics;
@@ -74,3 +81,12 @@ pub trait Trajectory<T: Real> {
     /// the instants between nanoseconds too, which a mean over an interval is made of.
     fn kinematics(&self, t_ns: i64, offset_s: f64) -> Kinematics<T>;
 }
+
+/// The one definition of [`Real`], also where the standard library offers its own.
+fn sin_cos(angle: f64) -> (f64, f64) {
+    Real::sin_cos(angle)
+}
+
+#[cfg(test)]
+#[path = "closed_form_tests.rs"]
+mod closed_form_tests;

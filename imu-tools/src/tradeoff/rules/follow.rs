@@ -111,13 +111,9 @@ impl Record {
     /// A record of a motion at these stamps, ns. `gathered` is only worked out where increments are asked for.
     #[must_use]
     pub fn new(motion: Motion, stamps: Vec<i64>, increments: bool) -> Self {
-        let seconds = |ns: i64| ns as f64 / 1e9;
-        let truth = stamps.iter().map(|&ns| motion.at(seconds(ns))).collect();
+        let truth = stamps.iter().map(|&ns| motion.at(ns)).collect();
         let gathered = if increments {
-            stamps
-                .windows(2)
-                .map(|pair| motion.gathered(seconds(pair[0]), seconds(pair[1])))
-                .collect()
+            stamps.windows(2).map(|pair| motion.gathered(pair[0], pair[1])).collect()
         } else {
             Vec::new()
         };

@@ -4,25 +4,31 @@ use crate::{Report, repeat};
 use core::hint::black_box;
 use imu_core::Real;
 use imu_core::sensor::Kinematics;
-use imu_core::trajectory::{Ellipse, Motion, Rest, Trajectory};
+use imu_core::trajectory::{Coning, Ellipse, Gait, Motion, Rest, Spin, Trajectory};
 
 /// Motions at spread instants, negative and far ones included.
 pub fn case<T: Real>(report: &mut dyn Report) {
-    let (ellipse, rest) = (black_box(Ellipse::default()), black_box(Rest::default()));
-    for t_ns in [i64::MIN, -1, 0, 1, 5_000_000, 1_000_000_007, 86_400_000_000_000, i64::MAX] {
-        motion::<T>(report, ellipse.at(black_box(t_ns)));
-        motion::<T>(report, rest.at(black_box(t_ns)));
-        for offset_s in [0.0, -1e-3, 2.5e-10, f64::INFINITY] {
-            kinematics::<T>(report, ellipse.kinematics(black_box(t_ns), black_box(offset_s)));
-            kinematics::<T>(report, rest.kinematics(black_box(t_ns), black_box(offset_s)));
-        }
-    }
+    let ellipse = black_box(Ellipse::default());
+    follow::<T>(report, &ellipse);
+    follow::<T>(report, &black_box(Rest::default()));
+    follow::<T>(report, &black_box(Gait::default()));
+    follow::<T>(report, &black_box(Coning::default()));
+    follow::<T>(report, &black_box(Spin::default()));
     for k in 0..64 {
         motion::<T>(report, ellipse.at(k * 312_345_678));
     }
     report.instructions("ellipse", 16, &mut || {
         repeat(16, || -> Motion<T> { ellipse.at(black_box(7_000_000_000)) });
     });
+}
+
+fn follow<T: Real>(report: &mut dyn Report, trajectory: &impl Trajectory<T>) {
+    for t_ns in [i64::MIN, -1, 0, 1, 5_000_000, 1_000_000_007, 86_400_000_000_000, i64::MAX] {
+        motion::<T>(report, trajectory.at(black_box(t_ns)));
+        for offset_s in [0.0, -1e-3, 2.5e-10, f64::INFINITY] {
+            kinematics::<T>(report, trajectory.kinematics(black_box(t_ns), black_box(offset_s)));
+        }
+    }
 }
 
 fn kinematics<T: Real>(report: &mut dyn Report, felt: Kinematics<T>) {
