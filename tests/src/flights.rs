@@ -5,6 +5,9 @@ use std::fmt::Write as _;
 use imu_core::nalgebra::Vector3;
 use imu_core::so3;
 
+/// When it began, s after the epoch: EuRoC's first.
+const BEGIN_S: f64 = 1_403_715_273.262_14;
+
 /// Poses of TUM, 20 a second, of a smooth flight about a room: a dozen sines up to 0.9 Hz for each of six
 /// coordinates. Stamps are those of a camera whose driver has them to 10 µs: 50 ms apart, but for that.
 #[must_use]
@@ -38,7 +41,7 @@ pub fn tum(seconds: u32, seed: u64) -> String {
         writeln!(
             text,
             "{:.5} {:.6} {:.6} {:.6} {:.6} {:.6} {:.6} {:.6}",
-            1_403_715_273.26214 + t,
+            BEGIN_S + t,
             at(0, t),
             at(1, t),
             at(2, t),
