@@ -267,7 +267,7 @@ fn on_the_earth(latitude: f64, world: &impl World<f64>) -> f64 {
     let earth = RotatingEarth::<f64>::new(latitude, 0.0).unwrap();
     let (turn, gravity) = (earth.rate(), earth.gravity());
     let read = |ns: i64| {
-        let truth = Motion::Ellipse.at(ns as f64 / 1e9);
+        let truth = Motion::Ellipse.at(ns);
         let body = |v: Vector3<f64>| so3::rotate(&so3::inverse(&truth.attitude_wb), &v);
         let acceleration = so3::rotate(&truth.attitude_wb, &truth.specific_force)
             - Vector3::new(0.0, 0.0, GRAVITY);

@@ -14,9 +14,9 @@ const MOST_KNOTS: i128 = 20_000_000;
 pub enum Spacing {
     /// As far as the poses: the median time between them.
     AsPoses,
-    /// This far, ns.
+    /// This far, ns. Where that is no part of the whole, poses at the end decide little of the last interval.
     Every(u32),
-    /// As far as they can be so that no pose is further from the curve than this.
+    /// As far as they can be, in equal parts of the whole, so that no pose is further from the curve than this.
     Within {
         /// m.
         position_m: f64,
@@ -55,14 +55,15 @@ pub(super) fn fitted<F: Form<f64>>(
         Spacing::Within { position_m, rotation_rad } => (position_m, rotation_rad),
     };
     let least = median_step_ns(poses);
-    let octaves = (span_ns(poses) as f64 / f64::from(least)).log2();
+    let span = span_ns(poses);
+    let octaves = (span as f64 / f64::from(least)).log2();
     for k in (1..=(octaves * f64::from(TO_AN_OCTAVE)) as i32).rev() {
         let step = f64::from(least) * (f64::from(k) / f64::from(TO_AN_OCTAVE)).exp2();
-        if step > f64::from(u32::MAX) {
-            continue;
-        }
+        // The last interval as long as the others: poses at the beginning of one decide little of it.
+        let parts = (span as f64 / step).ceil() as u64;
+        let Ok(step) = u32::try_from(span.div_ceil(parts.max(1))) else { continue };
         // Knots so far apart that neighbours turn by half a turn are just too far apart.
-        match fit_every::<F>(poses, options, step as u32) {
+        match fit_every::<F>(poses, options, step) {
             Ok(fit) if is_within(&fit, position_m, rotation_rad) => return Ok(fit),
             Ok(_) | Err(FitError::Turn | FitError::Undecided(_) | FitError::Spacing(_)) => {}
             Err(other) => return Err(other),
