@@ -108,3 +108,66 @@ fn rates_that_make_no_sense_are_refused() {
         assert!(said.err.contains(words) && said.err.lines().count() == 1, "{}", said.err);
     }
 }
+
+#[test]
+fn splines_are_compared() {
+    let folder = Folder::new();
+    let output = folder.path().to_str().unwrap();
+    let few = ["tradeoff", "spline", "--spacings", "0.05,0.1,0.05", "--motion", "ellipse"];
+    let said = run(&[&few[..], &["--json", "-o", output]].concat());
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    let value: Value = serde_json::from_str(&said.out).expect("one JSON object");
+    // The widest first; eight ways to a curve, in four kinds of numbers.
+    assert_eq!(value["spacings_s"], serde_json::json!([0.1, 0.05]));
+    assert_eq!(value["runs"].as_array().unwrap().len(), 2 * 8 * 4);
+    assert_eq!(value["prices"].as_array().unwrap().len(), 3 * 4);
+    let orders = value["orders"].as_array().unwrap();
+    // Rotation, ω, position and acceleration; at these steps within a fifth of what they come to.
+    for (form, control, expected) in [
+        ("plain", "interpolation", [3.0, 2.0, 4.0, 2.0]),
+        ("plain", "quasi-interpolant", [3.0, 2.0, 4.0, 2.0]),
+        ("symmetric", "interpolation", [4.0, 3.0, 4.0, 2.0]),
+        ("symmetric", "quasi-interpolant", [4.0, 3.0, 4.0, 2.0]),
+        ("plain", "poses as control points", [2.0; 4]),
+    ] {
+        let of = |row: &&Value| row["form"] == form && row["control_points"] == control;
+        let row = orders.iter().find(of).unwrap();
+        for (key, expected) in
+            ["rotation", "angular_rate", "position", "acceleration"].into_iter().zip(expected)
+        {
+            let order: f64 = row[key].as_f64().unwrap();
+            assert!((order - expected).abs() < 0.2, "{form}, {control}, {key}: {order}");
+        }
+    }
+    let page = std::fs::read_to_string(folder.at("tradeoff.md")).unwrap();
+    assert!(page.contains("--spacings 0.1,0.05 --motion ellipse"), "{page}");
+    for name in ["tradeoff-spline-orders", "tradeoff-spline-price"] {
+        let picture = std::fs::read_to_string(folder.at(&format!("{name}.svg"))).unwrap();
+        assert!(picture.starts_with("<svg") && picture.contains("symmetric"));
+        let pixels = std::fs::read(folder.at(&format!("{name}.png"))).unwrap();
+        assert!(pixels.starts_with(b"\x89PNG") && page.contains(&format!("({name}.svg)")));
+    }
+    // The same errors again, whatever the prices are; and the orders in the table.
+    let again = run(&few);
+    assert_eq!((again.code, again.err.as_str()), (0, ""));
+    let row = |line: &&str| line.starts_with("symmetric  interpolation") && line.ends_with("4.00");
+    assert!(again.out.lines().any(|line| row(&line)), "{}", again.out);
+}
+
+#[test]
+fn knots_that_make_no_sense_are_refused() {
+    for (arguments, words) in [
+        (&["--spacings", "0"][..], "from 0.001 to 4 s"),
+        (&["--spacings", "-0.1"], "from 0.001 to 4 s"),
+        (&["--spacings", "NaN"], "from 0.001 to 4 s"),
+        (&["--spacings", "61"], "from 0.001 to 4 s"),
+        (&["--spacings", "0.1,3.5", "--motion", "spin"], "leave spin, of 10 s"),
+        (&["--spacings", "close"], "close"),
+        (&["--motion", "jump"], "ellipse, gait, coning, spin, rest"),
+        (&["-o", "-"], "no pipe"),
+    ] {
+        let said = run(&[&["tradeoff", "spline"], arguments].concat());
+        assert_eq!((said.code, said.out.as_str()), (2, ""), "{}", said.err);
+        assert!(said.err.contains(words) && said.err.lines().count() == 1, "{}", said.err);
+    }
+}

@@ -10,5 +10,6 @@ mod cost;
 pub mod estimators;
 mod parallel;
 pub mod rules;
+pub mod spline;
 
 pub use cost::Cost;

@@ -24,6 +24,7 @@ mod png;
 mod residual;
 mod scale;
 mod signal;
+mod spline;
 mod svg;
 mod tradeoff;
 
@@ -33,6 +34,7 @@ pub use curve::{curve, curve_residual};
 pub use integration::{errors, trajectory};
 pub use residual::residual;
 pub use signal::signal;
+pub use spline::{spline_orders, spline_price};
 pub use tradeoff::{rules, tradeoff};
 
 use base64::Engine as _;

@@ -2,8 +2,25 @@
 
 pub mod allan;
 pub mod rules;
+pub mod spline;
 
 use std::fmt::Write as _;
+
+/// Three digits at most.
+fn number(value: f64) -> String {
+    match value {
+        0.0 => "0".into(),
+        v if (1e-2..1000.0).contains(&v.abs()) => {
+            let digits = (1.0 - v.abs().log10().floor()).max(0.0) as usize;
+            format!("{v:.digits$}")
+        }
+        v => format!("{v:.1e}"),
+    }
+}
+
+fn cells(names: &[&str], numbers: impl Iterator<Item = String>) -> Vec<String> {
+    names.iter().map(|name| (*name).to_owned()).chain(numbers).collect()
+}
 
 /// A title, and rows of cells, of which the first names the columns.
 struct Table {
@@ -102,5 +119,11 @@ mod tests {
         let once = page(Some(broken), "one");
         assert!(once.starts_with(broken));
         assert_eq!(page(Some(&once), "one"), once);
+    }
+
+    #[test]
+    fn numbers_have_two_digits_or_three() {
+        let all = [0.0, 1.2345e-5, 0.0123, 0.123, 1.234, 12.34, 123.4, 12345.0].map(number);
+        assert_eq!(all, ["0", "1.2e-5", "0.012", "0.12", "1.2", "12", "123", "1.2e4"]);
     }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Table, markdown, terminal, with_section};
+use super::{Table, cells, markdown, number, terminal, with_section};
 use crate::tradeoff::rules::follow::{CARRIERS, Carrier, Errors, RULES, Rule};
 use crate::tradeoff::rules::motion::{MOTIONS, Motion};
 use crate::tradeoff::rules::{Clean, GRADES, Noisy, Price, Tradeoff, Way};
@@ -12,22 +12,6 @@ const MARK: &str = "rules";
 
 /// Accuracies that a user may want of the attitude over a motion, °.
 const WANTED_DEG: [f64; 6] = [1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-6];
-
-/// Three digits at most.
-fn number(value: f64) -> String {
-    match value {
-        0.0 => "0".into(),
-        v if (1e-2..1000.0).contains(&v.abs()) => {
-            let digits = (1.0 - v.abs().log10().floor()).max(0.0) as usize;
-            format!("{v:.digits$}")
-        }
-        v => format!("{v:.1e}"),
-    }
-}
-
-fn cells(names: &[&str], numbers: impl Iterator<Item = String>) -> Vec<String> {
-    names.iter().map(|name| (*name).to_owned()).chain(numbers).collect()
-}
 
 fn rates(tradeoff: &Tradeoff) -> impl Iterator<Item = String> {
     tradeoff.plan.rates.iter().map(|rate| format!("{rate} Hz"))
@@ -266,11 +250,5 @@ mod tests {
         let first = page(None, &tradeoff, "a.svg");
         assert_eq!(page(Some(&first), &tradeoff, "a.svg"), first);
         assert!(!text.contains("NaN") && !text.contains("inf"));
-    }
-
-    #[test]
-    fn numbers_have_two_digits_or_three() {
-        let all = [0.0, 1.2345e-5, 0.0123, 0.123, 1.234, 12.34, 123.4, 12345.0].map(number);
-        assert_eq!(all, ["0", "1.2e-5", "0.012", "0.12", "1.2", "12", "123", "1.2e4"]);
     }
 }

@@ -259,7 +259,7 @@ impl Carries<f32> for Blocks {
     }
 }
 
-fn norm(v: &Vector3<f64>) -> f64 {
+pub(in crate::tradeoff) fn norm(v: &Vector3<f64>) -> f64 {
     v.x.hypot(v.y).hypot(v.z)
 }
 

@@ -44,6 +44,12 @@ impl Motion {
         }
     }
 
+    /// Any of [`MOTIONS`] by what tables call it.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        MOTIONS.into_iter().find(|motion| motion.name() == name)
+    }
+
     /// How long it is followed, s.
     #[must_use]
     pub fn duration_s(self) -> f64 {
