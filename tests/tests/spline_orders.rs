@@ -1,7 +1,8 @@
 //! Splines through poses of the classic ellipse: of which order each error is in the knot spacing, and how large.
 //!
 //! Steps divide the span of 12 s; errors are the largest of those at eight instants an interval. Slopes are fitted over
-//! 0.05 s to 6.25 ms, where nothing but the step decides: the smallest error there, 2e-12 rad, is a thousand roundings.
+//! 25 to 3 ms, where nothing but the step decides: the smallest error there, 7e-14 rad, is a hundred roundings, and above,
+//! the ends are further off than the middle.
 
 use imu_core::nalgebra::Vector3;
 use imu_core::se3::Pose;
@@ -11,7 +12,7 @@ use imu_core::spline::{Form, OneSided, SplitCurve, TimeSymmetric, interpolate};
 use imu_core::trajectory::{Ellipse, Motion, Trajectory};
 
 const SPAN_NS: i64 = 12_000_000_000;
-const STEPS_NS: [u32; 4] = [50_000_000, 25_000_000, 12_500_000, 6_250_000];
+const STEPS_NS: [u32; 4] = [25_000_000, 12_500_000, 6_250_000, 3_125_000];
 
 fn pose(t_ns: i64) -> Pose<f64> {
     let motion: Motion<f64> = Ellipse::default().at(t_ns);
@@ -95,9 +96,9 @@ fn the_product_is_of_order_3_and_the_symmetric_form_of_order_4() {
     let plain = has_orders::<OneSided>("plain", [3.0, 2.0, 1.0, 4.0, 2.0]);
     let symmetric = has_orders::<TimeSymmetric>("symmetric", [4.0, 3.0, 2.0, 4.0, 2.0]);
     // At 0.025 s: 3.7e-9 rad and 4.5e-7 rad/s of the product.
-    let [rotation, rate, ..] = symmetric[1];
+    let [rotation, rate, ..] = symmetric[0];
     assert!(rotation <= 4e-10 && rate <= 5e-8, "{rotation:e} {rate:e}");
-    assert!(plain[1][0] > 8.0 * rotation && plain[1][1] > 8.0 * rate, "{:?}", plain[1]);
+    assert!(plain[0][0] > 8.0 * rotation && plain[0][1] > 8.0 * rate, "{:?}", plain[0]);
 }
 
 /// (h²/6)|p̈| of 10 m/s² less what the fourth derivative takes off it.
