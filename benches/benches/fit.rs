@@ -12,6 +12,8 @@ use imu_core::trajectory::{Ellipse, Motion, Trajectory};
 use imu_tools::spline::{FormName, Options, Spacing, TimedPose, fit};
 use std::hint::black_box;
 
+type V3 = Vector3<f64>;
+
 const COUNT: usize = 3000;
 /// A pose every 10 ms; knots of least squares every five.
 const STEP_NS: u32 = 10_000_000;
@@ -44,7 +46,7 @@ impl Band {
     }
 
     /// Gauss's elimination with partial pivoting.
-    fn solve(mut self, values: &mut [[f64; 3]]) {
+    fn solve(mut self, values: &mut [V3]) {
         let size = self.rows.len();
         let right = |row: usize| (row + 2 * self.reach + 1).min(size);
         let below = |row: usize| (row + self.reach + 1).min(size);
@@ -63,25 +65,22 @@ impl Band {
                 for column in k..right {
                     *self.entry(row, column) -= factor * *self.entry(k, column);
                 }
-                for axis in 0..3 {
-                    values[row][axis] -= factor * values[k][axis];
-                }
+                let above = values[k];
+                values[row] -= above * factor;
             }
         }
         for (k, &(_, right)) in ends.iter().enumerate().rev() {
-            for axis in 0..3 {
-                let known: f64 = (k + 1..right).map(|c| *self.entry(k, c) * values[c][axis]).sum();
-                values[k][axis] = (values[k][axis] - known) / *self.entry(k, k);
-            }
+            let known: V3 = (k + 1..right).map(|c| values[c] * *self.entry(k, c)).sum();
+            values[k] = (values[k] - known) / *self.entry(k, k);
         }
     }
 }
 
 /// (c₋ + 4c + c₊)/6 = p, and no fifth difference at either end.
-fn interpolated_in_a_band(poses: &[TimedPose]) -> Vec<[f64; 3]> {
+fn interpolated_in_a_band(poses: &[TimedPose]) -> Vec<V3> {
     let size = poses.len() + 2;
     let mut band = Band::zero(size, 5);
-    let mut values = vec![[0.0; 3]; size];
+    let mut values = vec![V3::zeros(); size];
     for (k, weight) in [-1.0, 5.0, -10.0, 10.0, -5.0, 1.0].into_iter().enumerate() {
         *band.entry(0, k) = weight;
         *band.entry(size - 1, size - 6 + k) = weight;
@@ -90,17 +89,17 @@ fn interpolated_in_a_band(poses: &[TimedPose]) -> Vec<[f64; 3]> {
         for (column, weight) in (row - 1..).zip([1.0, 4.0, 1.0]) {
             *band.entry(row, column) = weight / 6.0;
         }
-        values[row] = pose.pose.translation().into();
+        values[row] = pose.pose.translation();
     }
     band.solve(&mut values);
     values
 }
 
 /// The normal equations of plain cubic weights.
-fn least_squares_in_a_band(poses: &[TimedPose]) -> Vec<[f64; 3]> {
+fn least_squares_in_a_band(poses: &[TimedPose]) -> Vec<V3> {
     let size = (poses.len() - 1).div_ceil(TO_A_KNOT) + 3;
     let mut band = Band::zero(size, 3);
-    let mut values = vec![[0.0; 3]; size];
+    let mut values = vec![V3::zeros(); size];
     for (k, pose) in poses.iter().enumerate() {
         let first = (k / TO_A_KNOT).min(size - 4);
         let u = (k - first * TO_A_KNOT) as f64 / TO_A_KNOT as f64;
@@ -115,9 +114,7 @@ fn least_squares_in_a_band(poses: &[TimedPose]) -> Vec<[f64; 3]> {
             for (j, b) in weights.into_iter().enumerate() {
                 *band.entry(first + i, first + j) += a * b;
             }
-            for axis in 0..3 {
-                values[first + i][axis] += a * pose.pose.translation()[axis];
-            }
+            values[first + i] += pose.pose.translation() * a;
         }
     }
     band.solve(&mut values);
@@ -130,10 +127,10 @@ fn check(poses: &[TimedPose]) {
     through::<OneSided>(poses, &mut control);
     let knots = Spacing::Every(STEP_NS * TO_A_KNOT as u32);
     let fitted = fit(poses, &Options { form: FormName::Plain, spacing: knots, smoothing_s: 0.0 });
-    let near = |control: &[Pose<f64>], band: &[[f64; 3]], limit: f64| {
+    let near = |control: &[Pose<f64>], band: &[V3], limit: f64| {
         assert_eq!(control.len(), band.len());
         for (point, values) in control.iter().zip(band) {
-            assert!((point.translation() - Vector3::from(*values)).abs().max() < limit);
+            assert!((point.translation() - values).abs().max() < limit);
         }
     };
     near(&control, &interpolated_in_a_band(poses), 1e-9);

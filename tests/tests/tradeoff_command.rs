@@ -113,16 +113,16 @@ fn rates_that_make_no_sense_are_refused() {
 fn splines_are_compared() {
     let folder = Folder::new();
     let output = folder.path().to_str().unwrap();
-    let few = ["tradeoff", "spline", "--spacings", "0.05,0.1,0.05", "--motion", "ellipse"];
+    let few = ["tradeoff", "spline", "--spacings", "0.0125,0.025,0.0125", "--motion", "ellipse"];
     let said = run(&[&few[..], &["--json", "-o", output]].concat());
     assert_eq!((said.code, said.err.as_str()), (0, ""));
     let value: Value = serde_json::from_str(&said.out).expect("one JSON object");
     // The widest first; eight ways to a curve, in four kinds of numbers.
-    assert_eq!(value["spacings_s"], serde_json::json!([0.1, 0.05]));
+    assert_eq!(value["spacings_s"], serde_json::json!([0.025, 0.0125]));
     assert_eq!(value["runs"].as_array().unwrap().len(), 2 * 8 * 4);
     assert_eq!(value["prices"].as_array().unwrap().len(), 3 * 4);
     let orders = value["orders"].as_array().unwrap();
-    // Rotation, ω, position and acceleration; at these steps within a fifth of what they come to.
+    // Rotation, ω, position and acceleration; at these steps as close to what they come to as the third digit.
     for (form, control, expected) in [
         ("plain", "interpolation", [3.0, 2.0, 4.0, 2.0]),
         ("plain", "quasi-interpolant", [3.0, 2.0, 4.0, 2.0]),
@@ -136,11 +136,11 @@ fn splines_are_compared() {
             ["rotation", "angular_rate", "position", "acceleration"].into_iter().zip(expected)
         {
             let order: f64 = row[key].as_f64().unwrap();
-            assert!((order - expected).abs() < 0.2, "{form}, {control}, {key}: {order}");
+            assert!((order - expected).abs() < 0.05, "{form}, {control}, {key}: {order}");
         }
     }
     let page = std::fs::read_to_string(folder.at("tradeoff.md")).unwrap();
-    assert!(page.contains("--spacings 0.1,0.05 --motion ellipse"), "{page}");
+    assert!(page.contains("--spacings 0.025,0.0125 --motion ellipse"), "{page}");
     for name in ["tradeoff-spline-orders", "tradeoff-spline-price"] {
         let picture = std::fs::read_to_string(folder.at(&format!("{name}.svg"))).unwrap();
         assert!(picture.starts_with("<svg") && picture.contains("symmetric"));
