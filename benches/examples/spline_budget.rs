@@ -5,8 +5,9 @@
 //! 4×4 matrices of the paper, with the logarithms worked out before in both, and in neither; single beside double
 //! precision; the time-symmetric form beside the plain one. Each row without a budget is the baseline of those below.
 //!
-//! Single precision is no faster on a processor with two doubles to a register: vectors of three leave a lane of four
-//! idle. It is for processors that have no doubles (775 instructions on a Cortex-M4F).
+//! Exits with 1 if a budget is exceeded, and one is: single precision was to take three quarters of double's time, and
+//! takes all of it on a processor with two doubles to a register, where vectors of three leave a lane of four idle. It
+//! is for processors that have no doubles (775 instructions on a Cortex-M4F).
 
 use imu_benches::contest::{Budget, Contender, decide};
 use imu_benches::matrices::{evaluated, homogeneous, log_between};
@@ -80,7 +81,7 @@ fn main() -> ExitCode {
         Contender::new("cached", budget(1.0 / 3.0), || ask(&cached, &instants)),
         Contender::baseline("cached", || ask(&cached, &instants)),
         Contender::new("symmetric, cached", budget(2.6), || ask(&symmetric, &instants)),
-        Contender::new("cached, f32", budget(1.1), || ask(&cached_single, &instants)),
+        Contender::new("cached, f32", budget(0.75), || ask(&cached_single, &instants)),
     ];
     println!("ns an evaluation, of {ROUNDS} interleaved passes over {INSTANTS} instants");
     decide(contenders, ROUNDS, INSTANTS as usize)
