@@ -6,6 +6,7 @@ pub mod calibrate;
 pub mod cli;
 pub mod error;
 pub mod integrate;
+pub mod live;
 pub mod output;
 pub mod recording;
 pub mod report;

@@ -1,0 +1,1 @@
+//! Sample times out of arrival times, a sensor's clock, and counters.

@@ -1,0 +1,1 @@
+//! Protocols of sensors: one a file, from bytes to messages.
