@@ -5,9 +5,7 @@
 //! 4×4 matrices of the paper, with the logarithms worked out before in both, and in neither; single beside double
 //! precision; the time-symmetric form beside the plain one. Each row without a budget is the baseline of those below.
 //!
-//! Exits with 1 if a budget is exceeded, and one is: single precision was to take three quarters of double's time, and
-//! takes all of it on a processor with two doubles to a register, where vectors of three leave a lane of four idle. It
-//! is for processors that have no doubles (775 instructions on a Cortex-M4F).
+//! Exits with 1 if a budget is exceeded.
 
 use imu_benches::contest::{Budget, Contender, decide};
 use imu_benches::matrices::{evaluated, homogeneous, log_between};

@@ -9,6 +9,7 @@ pub mod allan;
 pub mod delta;
 mod error;
 pub mod integrate;
+mod lanes;
 mod matrix;
 pub mod noise;
 pub mod preintegrate;

@@ -14,6 +14,7 @@
 //! ```
 
 use crate::allan::{Total, TwoStage};
+use crate::lanes::{Four, Plain, Single};
 use core::fmt::{Debug, Display};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -49,6 +50,9 @@ pub trait Real:
 {
     /// A running total of many terms ≥ 0 that stays right over 10⁹ of them.
     type Total: Total<Self>;
+    /// Four of them, in one register where there is one for four.
+    #[doc(hidden)]
+    type Four: Four<Self>;
 
     /// 0.
     const ZERO: Self;
@@ -90,10 +94,11 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($T:ident, $Total:ty, $limit:literal, $sqrt:path, $expm1:path, $rint:path,
+    ($T:ident, $Total:ty, $Four:ty, $limit:literal, $sqrt:path, $expm1:path, $rint:path,
      $sincos:path, $atan2:path) => {
         impl Real for $T {
             type Total = $Total;
+            type Four = $Four;
 
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -157,8 +162,18 @@ macro_rules! real {
     };
 }
 
-real!(f32, TwoStage, 1e12, libm::sqrtf, libm::expm1f, libm::rintf, libm::sincosf, libm::atan2f);
-real!(f64, f64, 1e100, libm::sqrt, libm::expm1, libm::rint, libm::sincos, libm::atan2);
+real!(
+    f32,
+    TwoStage,
+    Single,
+    1e12,
+    libm::sqrtf,
+    libm::expm1f,
+    libm::rintf,
+    libm::sincosf,
+    libm::atan2f
+);
+real!(f64, f64, Plain<f64>, 1e100, libm::sqrt, libm::expm1, libm::rint, libm::sincos, libm::atan2);
 
 #[cfg(test)]
 mod tests {

@@ -28,7 +28,9 @@ pub use jacobians::{inverse_left_jacobian, inverse_right_jacobian, left_jacobian
 pub(crate) use unit_log::log_of_unit;
 
 use crate::Real;
+use crate::lanes::Four;
 use crate::vector::{cross, dot};
+use core::ops::{Add, Mul};
 use nalgebra::{Quaternion, Vector3};
 
 /// Square of the half angle, in rad², up to which polynomials are right to rounding: an angle of 0.7 rad.
@@ -48,21 +50,44 @@ pub fn exp<T: Real>(rotation: Vector3<T>) -> Quaternion<T> {
 /// The rotation by twice a vector: who multiplies by a time anyway saves three multiplications.
 #[inline(always)]
 pub(crate) fn exp_of_half<T: Real>(half: Vector3<T>) -> Quaternion<T> {
-    let square = dot(&half, &half);
-    let (cos, sinc) = if square < T::from_f64(SMALL) { small(square) } else { large(square) };
-    Quaternion::new(cos, half.x * sinc, half.y * sinc, half.z * sinc)
+    exp_of_squared_half(half, dot(&half, &half))
 }
 
 /// The same of a half vector whose square is known.
 #[inline(always)]
 pub(crate) fn exp_of_squared_half<T: Real>(half: Vector3<T>, square: T) -> Quaternion<T> {
-    let (cos, sinc) = if square < T::from_f64(SMALL) { small(square) } else { large(square) };
+    let (cos, sinc) = cos_and_sinc(square);
     Quaternion::new(cos, half.x * sinc, half.y * sinc, half.z * sinc)
 }
 
-/// cos √x and sin √x/√x near 0 by their series; more terms would change nothing.
+/// cos √x and sin √x/√x.
 #[inline(always)]
-fn small<T: Real>(x: T) -> (T, T) {
+fn cos_and_sinc<T: Real>(x: T) -> (T, T) {
+    if x < T::from_f64(SMALL) { small::<T, T>(x, T::from_f64) } else { large(x) }
+}
+
+/// The same of four.
+#[inline(always)]
+pub(crate) fn four_cos_and_sinc<T: Real>(x: T::Four) -> (T::Four, T::Four) {
+    if x.all_below(T::from_f64(SMALL)) {
+        small::<T, T::Four>(x, |term| T::Four::all(T::from_f64(term)))
+    } else {
+        one_by_one::<T>(x)
+    }
+}
+
+#[cold]
+fn one_by_one<T: Real>(x: T::Four) -> (T::Four, T::Four) {
+    let pairs = x.lanes().map(cos_and_sinc);
+    (T::Four::new(pairs.map(|(cos, _)| cos)), T::Four::new(pairs.map(|(_, sinc)| sinc)))
+}
+
+/// cos √x and sin √x/√x near 0 by their series; more terms would change nothing. Of a `T`, or of several.
+#[inline(always)]
+fn small<T: Real, X>(x: X, constant: impl Fn(f64) -> X + Copy) -> (X, X)
+where
+    X: Copy + Add<Output = X> + Mul<Output = X>,
+{
     // (−1)ⁿ/(2n)! and (−1)ⁿ/(2n + 1)!
     const COS: [f64; 7] = [
         1.0,
@@ -83,18 +108,19 @@ fn small<T: Real>(x: T) -> (T, T) {
         1.0 / 6_227_020_800.0,
     ];
     if is_single::<T>() {
-        let horner = |series: &[f64; 7]| {
-            series.iter().take(4).rev().fold(T::ZERO, |sum, term| sum * x + T::from_f64(*term))
+        let horner = |series: [f64; 7]| {
+            let [a, b, c, d, ..] = series.map(constant);
+            ((d * x + c) * x + b) * x + a
         };
-        return (horner(&COS), horner(&SINC));
+        return (horner(COS), horner(SINC));
     }
     // Even and odd terms apart: a processor that can works on both at a time.
     let square = x * x;
-    let halves = |series: &[f64; 7]| {
-        let [a, b, c, d, e, f, g] = series.map(T::from_f64);
+    let halves = |series: [f64; 7]| {
+        let [a, b, c, d, e, f, g] = series.map(constant);
         (((g * square + e) * square + c) * square + a) + ((f * square + d) * square + b) * x
     };
-    (halves(&COS), halves(&SINC))
+    (halves(COS), halves(SINC))
 }
 
 /// cos √x and sin √x/√x where x is not near 0.

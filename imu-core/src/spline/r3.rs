@@ -7,6 +7,7 @@ use super::basis::Weights;
 use super::control::{Positions, Window};
 use super::kinematics::Position;
 use super::knots::{Knots, Place};
+use crate::lanes::{self, Four};
 use crate::{Error, Real};
 use nalgebra::Vector3;
 
@@ -90,23 +91,26 @@ type Moves<T> = Window<Vector3<T>, Vector3<T>>;
 
 #[inline(always)]
 pub(super) fn position<T: Real>(window: &Moves<T>, u: T) -> Vector3<T> {
-    window.first + weighted(&window.steps, &Weights::cubic(u, T::ONE).value)
+    let moved = weighted::<T>(&window.steps, &Weights::cubic(u, T::ONE).value);
+    lanes::to_vector(lanes::vector(&window.first) + moved)
 }
 
 #[inline(always)]
 pub(super) fn velocity<T: Real>(window: &Moves<T>, u: T, rate: T) -> Vector3<T> {
-    weighted(&window.steps, &Weights::cubic(u, rate).rate)
+    lanes::to_vector(weighted::<T>(&window.steps, &Weights::cubic(u, rate).rate))
 }
 
 /// ((1 − u)(Δ₂ − Δ₁) + u(Δ₃ − Δ₂))/h²
 #[inline(always)]
 pub(super) fn acceleration<T: Real>(window: &Moves<T>, u: T, rate: T) -> Vector3<T> {
-    let [a, b, c] = window.steps;
-    ((b - a) * (T::ONE - u) + (c - b) * u) * (rate * rate)
+    let [a, b, c] = window.steps.map(|step| lanes::vector(&step));
+    let mixed = (b - a) * T::Four::all(T::ONE - u) + (c - b) * T::Four::all(u);
+    lanes::to_vector(mixed * T::Four::all(rate * rate))
 }
 
 #[inline(always)]
-fn weighted<T: Real>([a, b, c]: &[Vector3<T>; 3], weights: &[T; 3]) -> Vector3<T> {
-    let [first, second, third] = *weights;
+fn weighted<T: Real>(steps: &[Vector3<T>; 3], weights: &[T; 3]) -> T::Four {
+    let [a, b, c] = steps.map(|step| lanes::vector(&step));
+    let [first, second, third] = weights.map(T::Four::all);
     a * first + b * second + c * third
 }

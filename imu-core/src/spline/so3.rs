@@ -11,8 +11,8 @@ use super::kinematics::Attitude;
 use super::knots::Knots;
 use super::symmetric::TimeSymmetric;
 use super::turn::Turn;
-use crate::vector::cross;
-use crate::{Error, Real, so3};
+use crate::lanes::{self, Four};
+use crate::{Error, Real};
 use core::marker::PhantomData;
 use nalgebra::{Quaternion, Vector3};
 
@@ -39,18 +39,60 @@ impl Sealed for OneSided {}
 impl<T: Real> Form<T> for OneSided {
     #[inline(always)]
     fn attitude(window: &Turns<T>, u: T) -> Quaternion<T> {
-        attitude(&window.first, &window.steps, &Weights::cubic(u, T::ONE))
+        lanes::to_quaternion::<T>(attitude(
+            &window.first,
+            &window.steps,
+            &Weights::cubic(u, T::ONE),
+        ))
     }
 
     #[inline(always)]
     fn attitude_and_rate(window: &Turns<T>, u: T, rate: T) -> (Quaternion<T>, Vector3<T>) {
-        attitude_and_rate(&window.first, &window.steps, &Weights::cubic(u, rate))
+        let weights = Weights::cubic(u, rate);
+        let (attitude, rate) = attitude_and_rate(&window.first, &window.steps, &weights);
+        (lanes::to_quaternion::<T>(attitude), lanes::to_vector(rate))
     }
 
     #[inline(always)]
     fn full(window: &Turns<T>, u: T, rate: T) -> Attitude<T> {
-        full(&window.first, &window.steps, &Weights::cubic(u, rate))
+        Attitude::of_lanes(full(&window.first, &window.steps, &Weights::cubic(u, rate)))
     }
+}
+
+impl<T: Real> Attitude<T> {
+    #[inline(always)]
+    pub(super) fn of_lanes(turning: Turning<T::Four>) -> Self {
+        Self {
+            attitude_wb: lanes::to_quaternion::<T>(turning.attitude),
+            angular_rate: lanes::to_vector(turning.rate),
+            angular_acceleration: lanes::to_vector(turning.acceleration),
+        }
+    }
+}
+
+/// A fold with its first two steps written out: round a loop, a compiler keeps in memory what fits into registers.
+macro_rules! fold_written_out {
+    ($items:expr, $begin:expr, $step:path) => {{
+        let (mut items, mut state) = ($items, $begin);
+        if let Some(item) = items.next() {
+            state = $step(state, item);
+        }
+        if let Some(item) = items.next() {
+            state = $step(state, item);
+        }
+        for item in items {
+            state = $step(state, item);
+        }
+        state
+    }};
+}
+
+/// Attitude, ω and α in lanes.
+#[derive(Clone, Copy)]
+pub(super) struct Turning<F> {
+    pub(super) attitude: F,
+    pub(super) rate: F,
+    pub(super) acceleration: F,
 }
 
 #[inline(always)]
@@ -58,9 +100,13 @@ pub(super) fn attitude<T: Real, const K: usize>(
     first: &Quaternion<T>,
     turns: &[Turn<T>; K],
     weights: &Weights<T, K>,
-) -> Quaternion<T> {
-    let parts = turns.iter().zip(&weights.value);
-    parts.fold(*first, |q, (turn, b)| so3::product(&q, &turn.part(*b)))
+) -> T::Four {
+    #[inline(always)]
+    fn turned<T: Real>(q: T::Four, part: &T::Four) -> T::Four {
+        lanes::product(q, *part)
+    }
+    let parts = Turn::parts(turns, &weights.value);
+    fold_written_out!(parts.iter(), lanes::quaternion(first), turned::<T>)
 }
 
 #[inline(always)]
@@ -68,17 +114,22 @@ pub(super) fn attitude_and_rate<T: Real, const K: usize>(
     first: &Quaternion<T>,
     turns: &[Turn<T>; K],
     weights: &Weights<T, K>,
-) -> (Quaternion<T>, Vector3<T>) {
-    let mut factors = turns.iter().zip(&weights.value).zip(&weights.rate);
-    let Some(((turn, b), b1)) = factors.next() else {
-        return (*first, Vector3::from([T::ZERO; 3]));
+) -> (T::Four, T::Four) {
+    type Factor<'a, T> = ((&'a <T as Real>::Four, &'a Turn<T>), &'a T);
+    #[inline(always)]
+    fn turned<T: Real>(
+        (q, rate): (T::Four, T::Four),
+        ((part, turn), b1): Factor<'_, T>,
+    ) -> (T::Four, T::Four) {
+        (lanes::product(q, *part), lanes::rotate_back(*part, rate) + turn.times(*b1))
+    }
+    let parts = Turn::parts(turns, &weights.value);
+    let mut factors = parts.iter().zip(turns).zip(&weights.rate);
+    let first = lanes::quaternion(first);
+    let Some(((part, turn), b1)) = factors.next() else {
+        return (first, T::Four::all(T::ZERO));
     };
-    let begin = (so3::product(first, &turn.part(*b)), turn.vector * *b1);
-    factors.fold(begin, |(q, rate), ((turn, b), b1)| {
-        let part = turn.part(*b);
-        let carried = so3::rotate(&so3::inverse(&part), &rate);
-        (so3::product(&q, &part), carried + turn.vector * *b1)
-    })
+    fold_written_out!(factors, (lanes::product(first, *part), turn.times(*b1)), turned::<T>)
 }
 
 #[inline(always)]
@@ -86,32 +137,38 @@ pub(super) fn full<T: Real, const K: usize>(
     first: &Quaternion<T>,
     turns: &[Turn<T>; K],
     weights: &Weights<T, K>,
-) -> Attitude<T> {
-    let rates = weights.rate.iter().zip(&weights.acceleration);
-    let mut factors = turns.iter().zip(&weights.value).zip(rates);
-    let zero = Vector3::from([T::ZERO; 3]);
-    let Some(((turn, b), (b1, b2))) = factors.next() else {
-        return Attitude { attitude_wb: *first, angular_rate: zero, angular_acceleration: zero };
-    };
-    let begin = Attitude {
-        attitude_wb: so3::product(first, &turn.part(*b)),
-        angular_rate: turn.vector * *b1,
-        angular_acceleration: turn.vector * *b2,
-    };
-    factors.fold(begin, |before, ((turn, b), (b1, b2))| {
-        let part = turn.part(*b);
-        let back = so3::inverse(&part);
-        let carried = so3::rotate(&back, &before.angular_rate);
-        let along = turn.vector * *b1;
-        Attitude {
-            attitude_wb: so3::product(&before.attitude_wb, &part),
-            angular_rate: carried + along,
+) -> Turning<T::Four> {
+    type Factor<'a, T> = ((&'a <T as Real>::Four, &'a Turn<T>), (&'a T, &'a T));
+    #[inline(always)]
+    fn turned<T: Real>(
+        before: Turning<T::Four>,
+        ((part, turn), (b1, b2)): Factor<'_, T>,
+    ) -> Turning<T::Four> {
+        let carried = lanes::rotate_back(*part, before.rate);
+        let along = turn.times(*b1);
+        Turning {
+            attitude: lanes::product(before.attitude, *part),
+            rate: carried + along,
             // The new rate crossed with d: its own part along d falls out.
-            angular_acceleration: so3::rotate(&back, &before.angular_acceleration)
-                + turn.vector * *b2
-                + cross(&carried, &along),
+            acceleration: lanes::rotate_back(*part, before.acceleration)
+                + turn.times(*b2)
+                + lanes::cross(carried, along),
         }
-    })
+    }
+    let parts = Turn::parts(turns, &weights.value);
+    let rates = weights.rate.iter().zip(&weights.acceleration);
+    let mut factors = parts.iter().zip(turns).zip(rates);
+    let first = lanes::quaternion(first);
+    let Some(((part, turn), (b1, b2))) = factors.next() else {
+        let zero = T::Four::all(T::ZERO);
+        return Turning { attitude: first, rate: zero, acceleration: zero };
+    };
+    let begin = Turning {
+        attitude: lanes::product(first, *part),
+        rate: turn.times(*b1),
+        acceleration: turn.times(*b2),
+    };
+    fold_written_out!(factors, begin, turned::<T>)
 }
 
 /// A curve of attitudes, of one of two forms: see [`So3Spline`] and [`SymmetricSo3Spline`].

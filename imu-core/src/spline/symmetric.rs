@@ -14,10 +14,10 @@
 use super::basis::Weights;
 use super::control::Sealed;
 use super::kinematics::Attitude;
-use super::so3::{Form, Turns, attitude, attitude_and_rate, full};
+use super::so3::{Form, Turning, Turns, attitude, attitude_and_rate, full};
 use super::turn::Turn;
-use crate::vector::cross;
-use crate::{Real, so3};
+use crate::Real;
+use crate::lanes::{self, Four};
 use nalgebra::{Quaternion, Vector3};
 
 /// The mean of the product from the first control point and the one from the last: of order 4, and the same curve in
@@ -41,34 +41,40 @@ fn from_the_end<T: Real>(window: &Turns<T>, u: T, rate: T) -> ([Turn<T>; 3], Wei
     ([third, second, first], weights)
 }
 
-/// S, with what leads from F to S (H) and k.
-struct Mean<T: Real> {
-    attitude_wb: Quaternion<T>,
-    to_mean: Quaternion<T>,
-    k: Vector3<T>,
+/// S, with what leads from F to S (H) and k, in lanes.
+struct Mean<F> {
+    attitude: F,
+    to_mean: F,
+    k: F,
 }
 
-impl<T: Real> Mean<T> {
+impl<F> Mean<F> {
     #[inline(always)]
-    fn of(f: &Quaternion<T>, g: &Quaternion<T>) -> Self {
-        let between = so3::product(&so3::inverse(f), g).coords;
-        let sign = if between.w < T::ZERO { -T::ONE } else { T::ONE };
-        let above = T::ONE + between.w * sign;
+    fn of<T: Real<Four = F>>(f: F, g: F) -> Self
+    where
+        F: Four<T>,
+    {
+        let between = lanes::product(lanes::inverse(f), g);
+        let [.., w] = between.lanes();
+        let sign = if w < T::ZERO { -T::ONE } else { T::ONE };
+        let above = T::ONE + w * sign;
         // |q_F + q_G|² = 2 + 2w; H = q_F* S = (1 + w, e)/|q_F + q_G|.
         let scale = T::ONE / (above + above).sqrt();
-        let e = Vector3::new(between.x, between.y, between.z) * sign;
-        let h = e * scale;
+        let e = between * F::all(sign);
         Self {
-            attitude_wb: Quaternion::from((f.coords + g.coords * sign) * scale),
-            to_mean: Quaternion::new(above * scale, h.x, h.y, h.z),
-            k: e * (scale * scale),
+            attitude: (f + g * F::all(sign)) * F::all(scale),
+            to_mean: (e * F::all(scale)).with_w(F::all(above * scale)),
+            k: e * F::all(scale * scale),
         }
     }
 
     /// ½(a + b) + k×(a − b)
     #[inline(always)]
-    fn mixed(&self, a: &Vector3<T>, b: &Vector3<T>) -> Vector3<T> {
-        (a + b) * T::from_f64(0.5) + cross(&self.k, &(a - b))
+    fn mixed<T: Real>(&self, a: F, b: F) -> F
+    where
+        F: Four<T>,
+    {
+        (a + b) * F::all(T::from_f64(0.5)) + lanes::cross(self.k, a - b)
     }
 }
 
@@ -77,7 +83,8 @@ impl<T: Real> Form<T> for TimeSymmetric {
     fn attitude(window: &Turns<T>, u: T) -> Quaternion<T> {
         let (turns, weights) = from_the_end(window, u, T::ONE);
         let f = attitude(&window.first, &window.steps, &Weights::cubic(u, T::ONE));
-        Mean::of(&f, &attitude(&window.last, &turns, &weights)).attitude_wb
+        let mean = Mean::of::<T>(f, attitude(&window.last, &turns, &weights));
+        lanes::to_quaternion::<T>(mean.attitude)
     }
 
     #[inline(always)]
@@ -85,10 +92,10 @@ impl<T: Real> Form<T> for TimeSymmetric {
         let (turns, weights) = from_the_end(window, u, rate);
         let (f, rate_f) = attitude_and_rate(&window.first, &window.steps, &Weights::cubic(u, rate));
         let (g, rate_g) = attitude_and_rate(&window.last, &turns, &weights);
-        let mean = Mean::of(&f, &g);
-        let a = so3::rotate(&so3::inverse(&mean.to_mean), &rate_f);
-        let b = so3::rotate(&mean.to_mean, &rate_g);
-        (mean.attitude_wb, mean.mixed(&a, &b))
+        let mean = Mean::of::<T>(f, g);
+        let a = lanes::rotate_back(mean.to_mean, rate_f);
+        let b = lanes::rotate(mean.to_mean, rate_g);
+        (lanes::to_quaternion::<T>(mean.attitude), lanes::to_vector(mean.mixed::<T>(a, b)))
     }
 
     #[inline(always)]
@@ -96,17 +103,13 @@ impl<T: Real> Form<T> for TimeSymmetric {
         let (turns, weights) = from_the_end(window, u, rate);
         let f = full(&window.first, &window.steps, &Weights::cubic(u, rate));
         let g = full(&window.last, &turns, &weights);
-        let mean = Mean::of(&f.attitude_wb, &g.attitude_wb);
-        let back = so3::inverse(&mean.to_mean);
-        let a = so3::rotate(&back, &f.angular_rate);
-        let b = so3::rotate(&mean.to_mean, &g.angular_rate);
-        let angular_rate = mean.mixed(&a, &b);
-        let a_dot = so3::rotate(&back, &f.angular_acceleration) + cross(&a, &angular_rate);
-        let b_dot = so3::rotate(&mean.to_mean, &g.angular_acceleration) + cross(&b, &angular_rate);
-        Attitude {
-            attitude_wb: mean.attitude_wb,
-            angular_rate,
-            angular_acceleration: mean.mixed(&a_dot, &b_dot),
-        }
+        let mean = Mean::of::<T>(f.attitude, g.attitude);
+        let a = lanes::rotate_back(mean.to_mean, f.rate);
+        let b = lanes::rotate(mean.to_mean, g.rate);
+        let rate = mean.mixed::<T>(a, b);
+        let a_dot = lanes::rotate_back(mean.to_mean, f.acceleration) + lanes::cross(a, rate);
+        let b_dot = lanes::rotate(mean.to_mean, g.acceleration) + lanes::cross(b, rate);
+        let acceleration = mean.mixed::<T>(a_dot, b_dot);
+        Attitude::of_lanes(Turning { attitude: mean.attitude, rate, acceleration })
     }
 }
