@@ -7,7 +7,7 @@ use imu_tools::scene::{
 };
 
 /// Everything that a scene can switch on.
-const ALL: &str = include_str!("../../examples/scenes/everything.toml");
+const ALL: &str = include_str!("../../../examples/scenes/everything.toml");
 
 fn all() -> Scene {
     Scene {

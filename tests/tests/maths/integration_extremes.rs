@@ -355,7 +355,7 @@ fn long_turn(steps: u64) -> [f64; 2] {
     [error(Quaternion::new(q.w, q.x, q.y, q.z)), error(double.attitude_wb())]
 }
 
-/// Four million steps; `cargo test --release -p imu-tests --test integration_extremes -- --ignored` takes all 10⁹.
+/// Four million steps; `cargo test --release -p imu-tests --test maths integration_extremes -- --ignored` takes all 10⁹.
 #[test]
 fn a_long_turn() {
     let [single, double] = long_turn(4_000_000);
