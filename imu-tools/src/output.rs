@@ -27,7 +27,7 @@ use tempfile::{Builder, NamedTempFile};
 
 use crate::error::Error;
 pub(crate) use unfinished::Unfinished;
-pub use unfinished::clean_up_on_signals;
+pub use unfinished::{clean_up_on_signals, end_is_asked, heed_signals};
 
 /// A file in the making. It keeps no buffer: write large pieces.
 #[derive(Debug)]
@@ -40,6 +40,7 @@ pub struct Output {
 enum To {
     Whole { file: NamedTempFile, unfinished: Unfinished },
     InPlace(File),
+    Growing(File),
     Stdout(io::Stdout),
 }
 
@@ -88,6 +89,26 @@ impl Output {
         Ok(Self { path, to })
     }
 
+    /// Starts a file that stands at `path` from the beginning and grows there, so that what was written
+    /// outlives the program whatever ends it: a recording of days.
+    ///
+    /// # Errors
+    /// When there is a file of that name already, or the folder cannot be written.
+    pub fn growing(path: &Path) -> Result<Self, Error> {
+        let made = File::options().write(true).create_new(true).open(path);
+        let file = made.map_err(|source| Error::io("write", path, source))?;
+        Ok(Self { path: path.to_owned(), to: To::Growing(file) })
+    }
+
+    /// Brings what was written to the disk itself, where this is a file that grows.
+    ///
+    /// # Errors
+    /// As [`Output::write`].
+    pub fn sync(&mut self) -> Result<(), Error> {
+        let To::Growing(file) = &mut self.to else { return Ok(()) };
+        file.sync_data().map_err(|source| Error::io("write", &self.path, source))
+    }
+
     /// Appends all of `bytes`.
     ///
     /// # Errors
@@ -95,7 +116,7 @@ impl Output {
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), Error> {
         match &mut self.to {
             To::Whole { file, .. } => file.as_file_mut().write_all(bytes),
-            To::InPlace(file) => file.write_all(bytes),
+            To::InPlace(file) | To::Growing(file) => file.write_all(bytes),
             To::Stdout(stdout) => stdout.write_all(bytes),
         }
         .map_err(|source| Error::io("write", &self.path, source))
@@ -108,8 +129,11 @@ impl Output {
     /// As [`Output::write`].
     pub fn patch(&mut self, offset: u64, bytes: &[u8]) -> Result<bool, Error> {
         use std::io::Seek as _;
-        let To::Whole { file, .. } = &mut self.to else { return Ok(false) };
-        let file = file.as_file_mut();
+        let file = match &mut self.to {
+            To::Whole { file, .. } => file.as_file_mut(),
+            To::Growing(file) => file,
+            To::InPlace(_) | To::Stdout(_) => return Ok(false),
+        };
         let end = file.stream_position();
         end.and_then(|end| {
             file.seek(io::SeekFrom::Start(offset))?;
@@ -130,6 +154,7 @@ impl Output {
                 unfinished.settle(|| file.persist(&self.path).map(drop).map_err(|e| e.error))
             }
             To::InPlace(mut file) => file.flush(),
+            To::Growing(file) => file.sync_all(),
             To::Stdout(mut stdout) => stdout.flush(),
         }
         .map_err(|source| Error::io("write", &self.path, source))
@@ -222,6 +247,19 @@ mod tests {
         output.write(b"2").unwrap();
         output.finish().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"size12");
+    }
+
+    #[test]
+    fn a_growing_file_is_there_at_once_and_never_in_the_place_of_another() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let mut output = Output::growing(&path).unwrap();
+        output.write(b"???t").unwrap();
+        output.sync().unwrap();
+        assert!(output.patch(0, b"cut").unwrap());
+        drop(output);
+        assert_eq!(fs::read(&path).unwrap(), b"cutt");
+        assert!(Output::growing(&path).is_err());
     }
 
     #[test]

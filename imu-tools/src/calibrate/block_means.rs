@@ -17,11 +17,13 @@
 //! assert_eq!(means.merged(200).length(), 256); // samples a block
 //! ```
 
+use serde::{Deserialize, Serialize};
+
 /// Blocks are merged when there are so many.
 const MOST: usize = 1 << 16;
 
 /// The three axes of a sensor as means of blocks of samples.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct BlockMeans {
     length: u64,
     /// Stretches between restarts, the last one growing. All but that have two blocks at least.
@@ -38,7 +40,7 @@ pub struct BlockMeans {
 }
 
 /// The samples of one block.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq)]
 pub(super) struct Block {
     /// How many were there.
     pub samples: u64,

@@ -10,6 +10,8 @@
 //! - **Coarse**: values lie on a grid. Its step is the smallest difference of the first
 //!   [`FIRST`] values, if all others are multiples of it.
 
+use serde::{Deserialize, Serialize};
+
 use super::Stretch;
 
 /// Values that show the step of the grid.
@@ -55,7 +57,7 @@ impl Checks {
 }
 
 /// Runs at one end of an axis's range.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 struct End {
     value: f64,
     /// Samples in the present run at that value, and in all long ones.
@@ -83,7 +85,7 @@ impl End {
 }
 
 /// Looks at values as they come.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Checker {
     low: [End; 3],
     high: [End; 3],

@@ -3,6 +3,8 @@
 //! Columns begin with one sample; whenever they are full, neighbours are merged, so that memory
 //! stays the same however long the recording is.
 
+use serde::{Deserialize, Serialize};
+
 use crate::recording::Event;
 
 /// Columns are merged when there are so many.
@@ -26,7 +28,7 @@ pub struct Column {
 }
 
 /// Sums of a column.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 struct Sums {
     samples: u64,
     low: [f64; 3],
@@ -65,7 +67,7 @@ impl Sums {
 }
 
 /// Takes a signal as it comes.
-#[derive(Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Envelope {
     /// Samples a column.
     length: u64,

@@ -1,10 +1,12 @@
 //! A second of samples that is held back until it is known whether the sensor was at rest in it.
 
+use serde::{Deserialize, Serialize};
+
 use super::usual::WindowStatistics;
 use crate::recording::Event;
 
 /// What a window holds, in order.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) enum Piece {
     Values(usize),
     Missing(u64),
@@ -12,7 +14,7 @@ pub(super) enum Piece {
 }
 
 /// A stretch of about a second.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub(super) struct Window {
     pub(super) start: u64,
     /// Instants in it, missing ones counted.

@@ -1,9 +1,11 @@
 //! What a reading of a sensor can be, learnt from the first ones of a record.
 
+use serde::{Deserialize, Serialize};
+
 use super::{SensorKind, SensorLadder};
 
 /// What a reading of the sensor can be: anything else is a glitch, and counts as missing.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(super) struct Limits {
     pub(super) reference: [f64; 3],
     pub(super) bound: [f64; 3],

@@ -27,8 +27,10 @@ mod fits;
 pub mod five_terms;
 pub(crate) mod gravity;
 mod held;
+mod ladder_bytes;
 mod lane;
 mod limits;
+pub mod live;
 pub mod maximum_likelihood;
 pub mod one_sample;
 mod refusal;
@@ -42,6 +44,8 @@ mod terms;
 mod usual;
 pub mod verdict;
 mod window;
+
+use serde::{Deserialize, Serialize};
 
 pub use checks::Checks;
 pub use envelope::Column;
@@ -126,7 +130,7 @@ pub struct Calibration {
 }
 
 /// Which of the two.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 pub enum SensorKind {
     /// Angular rate.
     Gyroscope,
@@ -347,9 +351,27 @@ pub fn examine(
             Note::Warning(text) => warnings.push(text),
         }
     }
+    let name = |record| source.record_name(record);
+    let (calibration, refusal) = judge(path, options, gyroscope, accelerometer, &name);
+    let calibration =
+        Calibration { remarks, warnings: [warnings, calibration.warnings].concat(), ..calibration };
+    let streams = source.streams();
+    Ok(Examined { calibration, refusal, streams, temperature: temperature.range() })
+}
+
+/// Puts both sensors together, and says what is wrong with them, and why nothing can be made of them,
+/// if so. `name` gives a record's name, where there are several.
+fn judge(
+    path: &str,
+    options: &Options,
+    gyroscope: Option<SensorNoise>,
+    accelerometer: Option<SensorNoise>,
+    name: &dyn Fn(usize) -> Option<String>,
+) -> (Calibration, Option<Error>) {
+    let mut warnings = Vec::new();
     let mut refusal = refusal::of_samples(path, &gyroscope, &accelerometer, options);
     for (record, mean) in accelerometer.iter().flat_map(|sensor| &sensor.record_means) {
-        let name = source.record_name(*record);
+        let name = name(*record);
         match gravity::check(*mean) {
             gravity::Verdict::Plausible => {}
             gravity::Verdict::OtherUnit(sentence) if !options.unit_is_given => {
@@ -372,11 +394,10 @@ pub fn examine(
         path: path.to_owned(),
         paths: vec![path.to_owned()],
         span_s: span(&gyroscope).max(span(&accelerometer)),
-        remarks,
+        remarks: Vec::new(),
         warnings,
         gyroscope,
         accelerometer,
     };
-    let streams = source.streams();
-    Ok(Examined { calibration, refusal, streams, temperature: temperature.range() })
+    (calibration, refusal)
 }

@@ -1,5 +1,7 @@
 //! One sensor's way from samples to noise: stamps to a grid, values into a ladder, a fit.
 
+use serde::{Deserialize, Serialize};
+
 use super::checks::Checker;
 use super::envelope::Envelope;
 use super::stillness::Stillness;
@@ -11,18 +13,21 @@ use crate::recording::{Event, Sample, Timeline};
 const PIECE: usize = 512;
 
 /// Takes the samples of one sensor as they come.
+#[derive(Clone, Deserialize, Serialize)]
 pub(super) struct Pipeline {
     kind: SensorKind,
+    #[serde(skip)]
     options: Options,
     timeline: Timeline,
     seen: Seen,
-    /// First and latest stamp, and how many.
+    /// First and latest of the first stamps, and how many.
     first_ns: Option<i64>,
     latest_ns: i64,
     samples: u64,
 }
 
 /// What looks at values on the grid, one after the other.
+#[derive(Clone, Deserialize, Serialize)]
 struct Seen {
     checker: Checker,
     envelope: Option<Envelope>,
@@ -69,16 +74,43 @@ impl Pipeline {
         }
     }
 
+    /// The same pipeline with other options, as far as they act at the end.
+    pub(super) fn with_options(self, options: &Options) -> Self {
+        Self { options: *options, ..self }
+    }
+
+    /// Takes samples; into how many calls they are divided makes no difference to any bit.
     pub(super) fn push(&mut self, samples: &[Sample]) {
-        if let (Some(first), Some(last)) = (samples.first(), samples.last()) {
-            self.first_ns.get_or_insert(first.stamp_ns);
-            self.latest_ns = self.latest_ns.max(last.stamp_ns);
-            self.samples += samples.len() as u64;
-        }
-        let period_s = self.rough_period_s();
-        for piece in samples.chunks(PIECE) {
+        let mut rest = samples;
+        while !rest.is_empty() {
+            let room = self.timeline.room();
+            let (piece, later) = rest.split_at(room.min(PIECE).min(rest.len()));
+            if room < usize::MAX {
+                self.note_stamps(piece);
+            }
+            let period_s = self.rough_period_s();
             self.timeline.push(piece, |event| self.seen.take(event, period_s));
+            rest = later;
         }
+    }
+
+    /// Notes the stamps of the first samples, which show about how far apart they are.
+    fn note_stamps(&mut self, samples: &[Sample]) {
+        if let Some(first) = samples.first() {
+            self.first_ns.get_or_insert(first.stamp_ns);
+        }
+        self.latest_ns = samples.iter().fold(self.latest_ns, |last, s| last.max(s.stamp_ns));
+        self.samples += samples.len() as u64;
+    }
+
+    /// What the sensor does now; `None` as long as too little is known of it.
+    pub(super) fn is_moving(&self) -> Option<bool> {
+        self.seen.stillness.is_disturbed()
+    }
+
+    /// Its rate by the latest stamps, Hz; `None` as long as it is not known.
+    pub(super) fn rate_hz(&self) -> Option<f64> {
+        self.timeline.rate_hz()
     }
 
     /// Time between samples, near enough to say how many make a second.

@@ -16,6 +16,8 @@
 
 use std::collections::VecDeque;
 
+use serde::{Deserialize, Serialize};
+
 /// Windows an average.
 const SHORT: usize = 8;
 const LONG: usize = 32;
@@ -39,21 +41,21 @@ const HALF: f64 = 0.674_490;
 const ERROR_OF_MEDIAN: f64 = 1.17;
 
 /// What is usual of the difference of two averages, on each axis.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 struct Spread {
     windows: usize,
     axes: [f64; 3],
 }
 
 /// A place whose averages are too far apart.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 struct Candidate {
     score: f64,
     place: u64,
 }
 
 /// Looks for shifts.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub(super) struct Shifts {
     /// Number of each window, and the sum of the means before it, since the last break.
     sums: VecDeque<(u64, [f64; 3])>,

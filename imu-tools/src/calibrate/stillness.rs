@@ -20,6 +20,8 @@
 
 use std::collections::VecDeque;
 
+use serde::{Deserialize, Serialize};
+
 use super::held::{Piece, Window, window};
 use super::limits::Limits;
 use super::shifts::Shifts;
@@ -44,7 +46,7 @@ const FEWEST_FOR_LEVEL: usize = 8;
 const LISTED: usize = 1000;
 
 /// A stretch of samples on the grid, first and behind the last, missing ones counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 pub(super) struct Stretch {
     pub(super) from: u64,
     pub(super) to: u64,
@@ -53,7 +55,7 @@ pub(super) struct Stretch {
 }
 
 /// Holds a sensor's samples back until it is known whether it was at rest.
-#[derive(Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Stillness {
     /// Samples a window; nothing is judged before it is known.
     window: usize,
@@ -133,7 +135,10 @@ impl Stillness {
                     let room = self.window - self.open.values.len();
                     let (now, later) = values.split_at(room.min(values.len()));
                     self.open.values.extend_from_slice(now);
-                    self.open.pieces.push(Piece::Values(now.len()));
+                    match self.open.pieces.last_mut() {
+                        Some(Piece::Values(n)) => *n += now.len(),
+                        _ => self.open.pieces.push(Piece::Values(now.len())),
+                    }
                     self.open.length += now.len() as u64;
                     if self.open.values.len() == self.window {
                         self.close(to);
@@ -171,6 +176,12 @@ impl Stillness {
     pub(super) fn finish(mut self, to: &mut impl FnMut(Event<'_>)) -> Vec<Stretch> {
         self.next_record(to);
         self.stretches
+    }
+
+    /// Whether the sensor is not at rest, by the last complete window; `None` as long as too few show
+    /// what is usual.
+    pub(super) fn is_disturbed(&self) -> Option<bool> {
+        self.waiting.back().filter(|_| self.judged).map(|window| window.disturbed)
     }
 
     /// A window is complete.

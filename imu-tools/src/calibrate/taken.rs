@@ -1,17 +1,22 @@
 //! What becomes of the readings of a sensor at rest: variances, means of blocks, and the mean.
 
+use serde::{Deserialize, Serialize};
+
 use super::block_means::BlockMeans;
 use super::limits::Limits;
 use super::{SensorKind, SensorLadder};
 use crate::recording::Event;
 
 /// What becomes of values on the grid.
+#[derive(Clone, Deserialize, Serialize)]
 pub(super) struct Taken {
     kind: SensorKind,
     /// Known when the first values of a record show what is normal.
     limits: Option<Limits>,
+    #[serde(with = "super::ladder_bytes")]
     ladder: SensorLadder,
     /// What the ladders of the records before this one gathered.
+    #[serde(with = "super::ladder_bytes::optional")]
     pub(super) earlier: Option<SensorLadder>,
     pub(super) means: BlockMeans,
     /// Mean and count of the records before this one; a record without a sample has no count.

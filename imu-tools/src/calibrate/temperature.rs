@@ -1,9 +1,11 @@
 //! What a thermometer said over a recording: biases follow temperature.
 
+use serde::{Deserialize, Serialize};
+
 use crate::recording::Temperature;
 
 /// Temperatures of a recording, °C.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 pub struct TemperatureRange {
     /// The first reading.
     pub first: f64,
@@ -18,7 +20,7 @@ pub struct TemperatureRange {
 }
 
 /// Takes readings as they come.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub(super) struct Thermometer(Option<TemperatureRange>);
 
 impl Thermometer {

@@ -11,6 +11,8 @@
 
 use std::collections::VecDeque;
 
+use serde::{Deserialize, Serialize};
+
 use super::limits::Limits;
 
 /// Windows of which the usual is learnt later on.
@@ -45,7 +47,7 @@ const STILL: f64 = 100.0;
 const PAIRS: usize = 64;
 
 /// Mean and variance of the samples of a window.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 pub(super) struct WindowStatistics {
     pub(super) mean: [f64; 3],
     log_variance: [f64; 3],
@@ -119,7 +121,7 @@ fn moments<'a>(
 }
 
 /// What is usual of one axis.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 struct Axis {
     /// Centre and spread of the logarithm of the variance.
     centre: f64,
@@ -138,7 +140,7 @@ impl Default for Axis {
 }
 
 /// The last windows, and what is usual of them.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub(super) struct Usual {
     /// Statistics of a window, and whether it stands apart from the one before it.
     ring: VecDeque<(WindowStatistics, bool)>,

@@ -1,11 +1,16 @@
 //! An IMU while it streams: bytes of a port to messages ([`protocol`]), messages to samples on the
-//! sensor's own clock ([`clock`]).
+//! sensor's own clock ([`clock`]), samples into a calibration that can be kept and gone on with
+//! ([`session`], [`checkpoint`]).
 //!
 //! Data flows one way: port → protocol → clock → [`crate::recording`]'s samples → calibration →
 //! screen.
 
+pub mod checkpoint;
 pub mod clock;
+pub mod goal;
+pub mod link;
 mod message;
 pub mod protocol;
+pub mod session;
 
 pub use message::{Count, Kind, Message, Ticks};

@@ -2,6 +2,7 @@
 
 use std::io;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The temporary files and folders that exist now.
@@ -42,6 +43,24 @@ impl Drop for Unfinished {
     }
 }
 
+/// The signal that asks the program to end, once it does; 0: none did.
+static ASKED: AtomicI32 = AtomicI32::new(0);
+
+/// Whether somebody looks at [`ASKED`].
+static HEEDED: AtomicBool = AtomicBool::new(false);
+
+/// From now on the first signal that asks the program to end is only noted: whoever calls this ends it in
+/// good time ([`end_is_asked`]). A second one ends it at once.
+pub fn heed_signals() {
+    HEEDED.store(true, Ordering::SeqCst);
+}
+
+/// The number of the signal that asks the program to end, if one does.
+#[must_use]
+pub fn end_is_asked() -> Option<i32> {
+    Some(ASKED.load(Ordering::SeqCst)).filter(|signal| *signal != 0)
+}
+
 /// From now on an interruption (Ctrl-C), a request to end (SIGTERM) or a terminal that is closed
 /// (SIGHUP) removes what is unfinished, and ends the program with the customary exit code, 130, 143
 /// or 129. Where there are no such signals nothing happens.
@@ -57,7 +76,10 @@ pub fn clean_up_on_signals() {
             return; // The system keeps its own way of ending programs.
         };
         std::thread::spawn(move || {
-            if let Some(signal) = signals.forever().next() {
+            for signal in signals.forever() {
+                if HEEDED.load(Ordering::SeqCst) && ASKED.swap(signal, Ordering::SeqCst) == 0 {
+                    continue;
+                }
                 // Nobody makes or settles anything while this lock is held, to the end.
                 let paths = paths();
                 remove(&paths);

@@ -60,6 +60,8 @@ mod zstandard;
 use std::io::Read;
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
+
 pub(crate) use ahead::read_ahead;
 pub use contents::{Contents, SampleKind};
 pub use convert::{Converted, convert};
@@ -69,11 +71,12 @@ pub use timeline::{ClockStep, Event, Gap, Summary, Timeline};
 pub use units::{ForceUnit, RateUnit, TimeUnit};
 
 use crate::error::Error;
+use crate::output::Output;
 use input::Input;
 use poses::{Pose, PoseTopic};
 
 /// One reading of one three-axis sensor.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 pub struct Sample {
     /// Nanoseconds since the epoch of the recording's clock.
     pub stamp_ns: i64,
@@ -214,6 +217,15 @@ pub trait Sink: Send {
     /// # Errors
     /// When the disk is full, or a stamp does not fit the format.
     fn write_block(&mut self, block: &Block) -> Result<(), Error>;
+
+    /// Writes out what waits, so that all of it is on the disk and can be read, where the file grows in
+    /// its place ([`grow`]).
+    ///
+    /// # Errors
+    /// When the disk is full.
+    fn flush(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// Completes the file and puts it in its place. A sink that is dropped instead leaves nothing.
     ///
@@ -382,6 +394,29 @@ pub fn create_with(
         Format::Mcap => Box::new(mcap::McapWriter::create(path)?),
         Format::Csv => Box::new(csv::CsvWriter::create_with(path, contents)?),
         Format::Euroc => Box::new(euroc::EurocWriter::create_with(path, contents.samples)?),
+    })
+}
+
+/// Starts a recording that stands at `path` from the beginning and grows there: whatever ends the program,
+/// it can be read up to the last [`Sink::flush`]. Its name says its format: a bag, an MCAP file or a CSV,
+/// which has a column for the temperature.
+///
+/// # Errors
+/// When there is a file of that name already, the folder cannot be written, or the format is not one file.
+pub fn grow(path: &Path) -> Result<Box<dyn Sink>, Error> {
+    let format = Format::of(path)?;
+    if path == Path::new("-") || format == Format::Euroc {
+        return Err(Error::usage(format!(
+            "a recording that grows is one file: {} is none; end its name with .bag, .mcap or .csv",
+            path.display()
+        )));
+    }
+    let output = Output::growing(path)?;
+    let contents = Contents { samples: SampleKind::Instantaneous, temperature: true };
+    Ok(match format {
+        Format::Bag => Box::new(bag::BagWriter::write_to(output)?),
+        Format::Mcap => Box::new(mcap::McapWriter::write_to(output)?),
+        Format::Csv | Format::Euroc => Box::new(csv::CsvWriter::write_to(output, contents)),
     })
 }
 

@@ -75,10 +75,18 @@ impl BagWriter {
     /// # Errors
     /// When the folder cannot be written.
     pub fn create(path: &Path) -> Result<Self, Error> {
+        Self::write_to(Output::create(path)?)
+    }
+
+    /// Starts the bag that `output` will be.
+    ///
+    /// # Errors
+    /// When the disk is full.
+    pub(crate) fn write_to(output: Output) -> Result<Self, Error> {
         let mut record = Vec::new();
         push_header(&mut record, &[("conn", &CONN), ("op", &[op::MESSAGE]), ("time", &[0; 8])]);
         let mut bag = Self {
-            output: Output::create(path)?,
+            output,
             written: 0,
             chunk: Vec::with_capacity(CHUNK + 4096),
             index: Vec::with_capacity(CHUNK / 24),
@@ -229,6 +237,11 @@ impl Sink for BagWriter {
             let message = ImuMessage { stamp: split(stamp_ns)?, rate, force };
             self.message(stamp_ns, &message)
         })
+    }
+
+    fn flush(&mut self) -> Result<(), Error> {
+        self.close_chunk()?;
+        self.output.sync()
     }
 
     fn finish(self: Box<Self>) -> Result<(), Error> {

@@ -49,14 +49,19 @@ impl CsvWriter {
     /// # Errors
     /// When the folder cannot be written.
     pub fn create_with(path: &Path, contents: Contents) -> Result<Self, Error> {
+        Ok(Self::write_to(Output::create(path)?, contents))
+    }
+
+    /// Starts the CSV that `output` will be.
+    pub(crate) fn write_to(output: Output, contents: Contents) -> Self {
         let Contents { samples, temperature } = contents;
         let mut text = Vec::with_capacity(PIECE + 1024);
         text.extend_from_slice(header(samples).as_bytes());
         text.extend_from_slice(if temperature { b",temperature [degC]\n" } else { b"\n" });
-        Ok(Self { output: Output::create(path)?, text, temperature })
+        Self { output, text, temperature }
     }
 
-    fn flush(&mut self) -> Result<(), Error> {
+    fn hand_on(&mut self) -> Result<(), Error> {
         self.output.write(&self.text)?;
         self.text.clear();
         Ok(())
@@ -115,12 +120,17 @@ impl Sink for CsvWriter {
                 }
             }
             self.text.push(b'\n');
-            if self.text.len() < PIECE { Ok(()) } else { self.flush() }
+            if self.text.len() < PIECE { Ok(()) } else { self.hand_on() }
         })
     }
 
+    fn flush(&mut self) -> Result<(), Error> {
+        self.hand_on()?;
+        self.output.sync()
+    }
+
     fn finish(mut self: Box<Self>) -> Result<(), Error> {
-        self.flush()?;
+        self.hand_on()?;
         self.output.finish()
     }
 }

@@ -128,8 +128,16 @@ impl McapWriter {
     /// # Errors
     /// When the folder cannot be written.
     pub fn create(path: &Path) -> Result<Self, Error> {
+        Self::write_to(Output::create(path)?)
+    }
+
+    /// Starts the file that `output` will be.
+    ///
+    /// # Errors
+    /// When the disk is full.
+    pub(crate) fn write_to(output: Output) -> Result<Self, Error> {
         let mut mcap = Self {
-            output: Output::create(path)?,
+            output,
             written: 0,
             sum: Hasher::new(),
             chunk: Vec::with_capacity(CHUNK + 4096),
@@ -315,6 +323,11 @@ impl McapWriter {
 impl Sink for McapWriter {
     fn write_block(&mut self, block: &Block) -> Result<(), Error> {
         merge(block, |stamp_ns, rate, force| self.message(Stamp::new(stamp_ns)?, rate, force))
+    }
+
+    fn flush(&mut self) -> Result<(), Error> {
+        self.close_chunk()?;
+        self.output.sync()
     }
 
     fn finish(self: Box<Self>) -> Result<(), Error> {

@@ -1,5 +1,7 @@
 //! The grid of a sensor's clock, followed slowly, and the rules that place a stamp on it.
 
+use serde::{Deserialize, Serialize};
+
 use crate::recording::Sample;
 
 /// A stamp within this part of a period from its place is in its place.
@@ -64,7 +66,7 @@ pub enum Verdict {
 }
 
 /// Phase and period of a sensor's clock. All times are nanoseconds after `origin`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Grid {
     origin: i64,
     period: f64,
@@ -79,7 +81,7 @@ pub struct Grid {
     /// Exponential mean of squared errors, ns²: without those of `recent`.
     jitter: f64,
     /// Exponential mean of whether a stamp is in its place.
-    pub(super) in_place: f64,
+    in_place: f64,
     /// What follows from period and jitter.
     bounds: Bounds,
     /// Since period, jitter and bounds were computed.
@@ -90,14 +92,14 @@ pub struct Grid {
 }
 
 /// The sum of errors (ns), as far as the grid follows them, and of their squares.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 struct Errors {
     sum: f64,
     squares: f64,
 }
 
 /// Limits of errors in ns, and how fast the grid follows.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 struct Bounds {
     near: f64,
     widest: f64,
@@ -184,13 +186,14 @@ impl Grid {
     }
 
     /// Takes in samples as long as each is in its place, later than the one before, and shows none to
-    /// be missing, as most do: the same as [`accept`](Self::accept) of each, faster (and `in_place` to first
-    /// order). How many it took.
+    /// be missing, as most do: the same as [`accept`](Self::accept) of each, faster. How many it took.
     pub fn follow(&mut self, samples: &[Sample], mut last_ns: i64) -> usize {
         let mut taken = 0;
         loop {
             let Bounds { near, slip, phase_gain, .. } = self.bounds;
-            let Self { origin, mut next, period, mut recent, mut slow, .. } = *self;
+            let Self {
+                origin, mut next, period, mut recent, mut slow, in_place: mut placed, ..
+            } = *self;
             let to_bounds = Bounds::EVERY - self.accepted % Bounds::EVERY;
             let mut followed = 0;
             for sample in samples.iter().skip(taken).take(to_bounds as usize) {
@@ -204,12 +207,11 @@ impl Grid {
                 recent.sum += error;
                 recent.squares += error * error;
                 slow = slower;
+                placed += (1.0 - placed) * (1.0 / JITTER);
                 next = (next + period) + phase_gain * error;
                 followed += 1;
             }
-            *self = Self { next, recent, slow, ..self.clone() };
-            // As of each by itself, to first order.
-            self.in_place += (1.0 - self.in_place) * (followed as f64 / JITTER);
+            *self = Self { next, recent, slow, in_place: placed, ..self.clone() };
             self.points += followed;
             self.accepted += followed;
             taken += followed as usize;

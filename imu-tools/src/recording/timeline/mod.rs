@@ -29,6 +29,8 @@
 mod fit;
 mod grid;
 
+use serde::{Deserialize, Serialize};
+
 use super::Sample;
 use grid::{Grid, Verdict};
 
@@ -47,7 +49,7 @@ pub enum Event<'a> {
 }
 
 /// A stretch without readings.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 pub struct Gap {
     /// Seconds from the first sample to the last one before the gap.
     pub at_s: f64,
@@ -56,7 +58,7 @@ pub struct Gap {
 }
 
 /// A clock that was set while samples went on.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 pub struct ClockStep {
     /// Seconds from the first sample.
     pub at_s: f64,
@@ -65,7 +67,7 @@ pub struct ClockStep {
 }
 
 /// What is known of a sensor's stamps.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 pub struct Summary {
     /// Samples handed on.
     pub samples: u64,
@@ -105,7 +107,7 @@ impl Summary {
 }
 
 /// Snaps the stamps of one sensor to the grid of its rate.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Timeline {
     summary: Summary,
     /// Samples whose place is not decided.
@@ -137,15 +139,41 @@ impl Timeline {
     }
 
     /// Takes the next samples and hands on what can be decided: the first [`PREFIX`] samples are
-    /// held back until the rate is known, later ones only where a gap may begin.
+    /// held back until the rate is known, later ones only where a gap may begin. Into how many calls
+    /// samples are divided makes no difference.
     pub fn push(&mut self, samples: &[Sample], mut to: impl FnMut(Event<'_>)) {
-        let rest = self.follow(samples);
-        self.take_in(rest);
-        if !self.pending.is_empty() && (self.grid.is_some() || self.pending.len() >= PREFIX) {
-            self.decide(false, &mut to);
-        } else if self.grid.is_some() {
-            self.hand_on(&mut to);
+        let mut rest = samples;
+        while self.grid.is_none() && !rest.is_empty() {
+            let (now, later) = rest.split_at(self.room().min(rest.len()));
+            self.take_in(now);
+            if self.pending.len() >= PREFIX {
+                self.decide(false, &mut to);
+            }
+            rest = later;
         }
+        let rest = self.follow(rest);
+        self.take_in(rest);
+        if self.grid.is_some() {
+            if self.pending.is_empty() {
+                self.hand_on(&mut to);
+            } else {
+                self.decide(false, &mut to);
+            }
+        }
+    }
+
+    /// How many samples it takes at most until the first ones are handed on; `usize::MAX` when they
+    /// were.
+    pub(crate) fn room(&self) -> usize {
+        match self.grid {
+            Some(_) => usize::MAX,
+            None => PREFIX.saturating_sub(self.pending.len()).max(1),
+        }
+    }
+
+    /// The rate as the grid follows it, Hz; `None` as long as it is not known.
+    pub(crate) fn rate_hz(&self) -> Option<f64> {
+        self.grid.as_ref().map(|grid| 1e9 / grid.period())
     }
 
     /// Places samples as long as each is where it belongs, as most are, without holding them back

@@ -323,8 +323,6 @@ fn following_is_accepting() {
     while !rest.is_empty() {
         let (taken, after) = rest.split_at(fast.follow(rest, last_ns));
         let slips = taken.iter().map(|s| slow.accept(slow.error(s.stamp_ns))).sum::<u64>();
-        // Bit for bit, but for a share that is known to first order.
-        fast.in_place = slow.in_place;
         assert_eq!((format!("{fast:?}"), slips), (format!("{slow:?}"), 0));
         followed += taken.len();
         rest = after;

@@ -1,0 +1,213 @@
+//! A checkpoint on disk: whole or not there, checked, and with the one before it.
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 8 | `IMULIVE` and a zero |
+//! | 2 | version of what follows (1), little-endian |
+//! | 8 | length of the payload, little-endian |
+//! | … | the payload |
+//! | 4 | CRC-32 (IEEE 802.3) of all bytes before, little-endian |
+//!
+//! It is written to `NAME.part` and flushed to the disk; then `NAME` becomes `NAME.previous` and
+//! `NAME.part` becomes `NAME`. Whenever the power goes, one of them is whole.
+
+use std::fs::{self, File};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+
+const MAGIC: &[u8; 8] = b"IMULIVE\0";
+const VERSION: u16 = 1;
+const HEADER: usize = 18;
+const CRC: usize = 4;
+
+/// A payload that was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// What was kept.
+    pub payload: Vec<u8>,
+    /// What there is to tell: that this is not the latest one, and why.
+    pub warning: Option<String>,
+}
+
+/// Why a file is not taken.
+enum Refused {
+    Missing,
+    Damaged(&'static str),
+    Newer(u16),
+    Unreadable(io::Error),
+}
+
+/// `path` with something at the end of its name.
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(ending);
+    name.into()
+}
+
+/// Puts a checkpoint in the place of the one at `path`, which is kept as `.previous`.
+///
+/// # Errors
+/// When the disk is full or the folder cannot be written; then the one at `path` is still there.
+pub fn write(path: &Path, payload: &[u8]) -> Result<(), Error> {
+    let mut bytes = Vec::with_capacity(HEADER + payload.len() + CRC);
+    bytes.extend_from_slice(MAGIC);
+    bytes.extend_from_slice(&VERSION.to_le_bytes());
+    bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
+    bytes.extend_from_slice(payload);
+    bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
+    let part = beside(path, ".part");
+    let written = (|| {
+        let mut file = File::create(&part)?;
+        file.write_all(&bytes)?;
+        file.sync_all()?;
+        if path.exists() {
+            fs::rename(path, beside(path, ".previous"))?;
+        }
+        fs::rename(&part, path)
+    })();
+    written.map_err(|source| Error::io("write the checkpoint", path, source))
+}
+
+/// The latest checkpoint at `path` that is whole; `None` where there never was one.
+///
+/// # Errors
+/// When it is of a newer version of this program, or none that there is is whole.
+pub fn read(path: &Path) -> Result<Option<Found>, Error> {
+    let (part, previous) = (beside(path, ".part"), beside(path, ".previous"));
+    let why = match one(path) {
+        Ok(payload) => return Ok(Some(Found { payload, warning: None })),
+        Err(Refused::Newer(version)) => {
+            return Err(Error::data(format!(
+                "the checkpoint {} is of a newer version of this program ({version}; this one reads \
+                 {VERSION}): resume with that one, or begin anew with another --checkpoint",
+                path.display()
+            )));
+        }
+        Err(Refused::Unreadable(source)) => {
+            return Err(Error::io("read the checkpoint", path, source));
+        }
+        // The power went between two renames: the new one is complete beside it.
+        Err(Refused::Missing) => match (one(&part), previous.exists()) {
+            (Ok(payload), true) => return Ok(Some(Found { payload, warning: None })),
+            (_, false) => return Ok(None),
+            (Err(_), true) => "is missing",
+        },
+        Err(Refused::Damaged(why)) => why,
+    };
+    match one(&previous) {
+        Ok(payload) => {
+            let warning = format!(
+                "the checkpoint {} {why}: the one before it, {}, is taken",
+                path.display(),
+                previous.display()
+            );
+            Ok(Some(Found { payload, warning: Some(warning) }))
+        }
+        Err(_) => Err(Error::data(format!(
+            "the checkpoint {} {why}, and there is no whole one before it: begin anew with --fresh",
+            path.display()
+        ))),
+    }
+}
+
+/// The payload of one file.
+fn one(path: &Path) -> Result<Vec<u8>, Refused> {
+    let bytes = fs::read(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => Refused::Missing,
+        _ => Refused::Unreadable(error),
+    })?;
+    let Some((header, _)) = bytes.split_first_chunk::<HEADER>() else {
+        return Err(Refused::Damaged("is cut off"));
+    };
+    let [a, b, c, d, e, f, g, h, v0, v1, l @ ..] = *header;
+    if [a, b, c, d, e, f, g, h] != *MAGIC {
+        return Err(Refused::Damaged("is none, or its beginning is damaged"));
+    }
+    let version = u16::from_le_bytes([v0, v1]);
+    let Some((body, crc)) = bytes.split_last_chunk::<CRC>() else {
+        return Err(Refused::Damaged("is cut off"));
+    };
+    let whole = u32::from_le_bytes(*crc) == crc32fast::hash(body);
+    if version > VERSION && whole {
+        return Err(Refused::Newer(version));
+    }
+    let payload = body.get(HEADER..).unwrap_or_default();
+    if payload.len() as u64 != u64::from_le_bytes(l) {
+        return Err(Refused::Damaged("is cut off"));
+    }
+    if !whole || version != VERSION {
+        return Err(Refused::Damaged("is damaged (its checksum does not match)"));
+    }
+    Ok(payload.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn payload(found: Option<Found>) -> (Vec<u8>, bool) {
+        let found = found.unwrap();
+        (found.payload, found.warning.is_some())
+    }
+
+    #[test]
+    fn the_latest_is_read_and_the_one_before_is_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("c");
+        assert_eq!(read(&path).unwrap(), None);
+        for text in [&b"one"[..], b"two", b""] {
+            write(&path, text).unwrap();
+            assert_eq!(payload(read(&path).unwrap()), (text.to_vec(), false));
+        }
+        assert_eq!(one(&beside(&path, ".previous")).ok().unwrap(), b"two");
+    }
+
+    #[test]
+    fn whatever_is_damaged_the_one_before_is_taken_and_that_is_said() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("c");
+        write(&path, b"one").unwrap();
+        write(&path, b"two").unwrap();
+        let whole = fs::read(&path).unwrap();
+        for at in 0..whole.len() {
+            let mut bytes = whole.clone();
+            bytes[at] ^= 0x40;
+            fs::write(&path, &bytes).unwrap();
+            assert_eq!(payload(read(&path).unwrap()), (b"one".to_vec(), true), "byte {at}");
+            fs::write(&path, &whole[..at]).unwrap();
+            assert_eq!(payload(read(&path).unwrap()), (b"one".to_vec(), true), "cut at {at}");
+        }
+        fs::remove_file(beside(&path, ".previous")).unwrap();
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains("is cut off") && error.contains("--fresh"), "{error}");
+    }
+
+    #[test]
+    fn a_power_loss_between_the_renames_loses_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("c");
+        write(&path, b"one").unwrap();
+        fs::rename(&path, beside(&path, ".previous")).unwrap();
+        assert_eq!(payload(read(&path).unwrap()), (b"one".to_vec(), true));
+        write(&beside(&path, ".part"), b"two").unwrap();
+        assert_eq!(payload(read(&path).unwrap()), (b"two".to_vec(), false));
+    }
+
+    #[test]
+    fn a_newer_version_is_refused_and_not_taken_for_damage() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("c");
+        write(&path, b"one").unwrap();
+        write(&path, b"two").unwrap();
+        let mut bytes = fs::read(&path).unwrap();
+        bytes[8] = 2;
+        let end = bytes.len() - CRC;
+        let crc = crc32fast::hash(&bytes[..end]).to_le_bytes();
+        bytes[end..].copy_from_slice(&crc);
+        fs::write(&path, &bytes).unwrap();
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains("newer version of this program (2; this one reads 1)"), "{error}");
+    }
+}

@@ -1,0 +1,45 @@
+//! What is known of the way from the sensor to here: bytes, frames, clock, losses.
+
+/// The state of a link.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Link {
+    /// Protocol and port, in words.
+    pub name: String,
+    /// Why nothing comes now, if so: the device was unplugged.
+    pub gone: Option<String>,
+    /// Bytes that came.
+    pub bytes: u64,
+    /// Bytes of them that were part of no valid frame.
+    pub refused: u64,
+    /// Frames whose checksum was wrong.
+    pub bad_checksums: u64,
+    /// Messages with samples.
+    pub messages: u64,
+    /// What the clock found, where there is one.
+    pub clock: Option<LinkClock>,
+}
+
+/// What the clock of a link found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LinkClock {
+    /// Messages a second.
+    pub rate_hz: f64,
+    /// Its standard deviation, Hz.
+    pub rate_sd_hz: f64,
+    /// How far arrivals scatter about the sensor's clock, s (rms).
+    pub jitter_s: f64,
+    /// Messages that did not come.
+    pub lost: u64,
+    /// Whether they were counted, and not guessed from arrivals.
+    pub lost_is_certain: bool,
+    /// Times that the sensor was switched on anew.
+    pub restarts: u64,
+}
+
+impl Link {
+    /// The share of bytes that were refused; 0 of none.
+    #[must_use]
+    pub fn refused_share(&self) -> f64 {
+        if self.bytes == 0 { 0.0 } else { self.refused as f64 / self.bytes as f64 }
+    }
+}

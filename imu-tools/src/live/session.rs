@@ -1,0 +1,305 @@
+//! One calibration while it runs: what is taken, left out, kept and shown. No file, port or screen is
+//! known here.
+
+use serde::{Deserialize, Serialize};
+
+use super::link::Link;
+use crate::calibrate::live::{Running, Snapshot};
+use crate::calibrate::{Calibration, Options};
+use crate::error::Error;
+use crate::recording::{Block, Sample};
+
+/// A moment that the user marked.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+pub struct Mark {
+    /// Seconds of the sensor's time after the first sample.
+    pub at_s: f64,
+}
+
+/// Marks that are kept, at most.
+const MARKS: usize = 1000;
+
+/// What came before, when a session goes on with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Before {
+    /// The same samples come once more from the beginning: those that were taken are passed over.
+    ComesAgain,
+    /// It is past: what comes now is new. A clock that was set back meanwhile is a restart.
+    IsPast,
+}
+
+/// A calibration while it runs.
+pub struct Session {
+    name: String,
+    options: Options,
+    running: Running,
+    kept: State,
+    /// Samples up to these stamps were taken before; `None`: not any more, or never.
+    taken: [Option<i64>; 2],
+    before: Before,
+    paused: bool,
+}
+
+/// What a checkpoint holds beside the calibration.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
+struct State {
+    name: String,
+    first_ns: Option<i64>,
+    marks: Vec<Mark>,
+    /// Times that it went on from a checkpoint.
+    resumed: u32,
+    /// It ended as it should: there is nothing to go on with.
+    ended: bool,
+    celsius: Option<f64>,
+}
+
+/// What a checkpoint holds.
+#[derive(Deserialize, Serialize)]
+struct Kept<'a> {
+    state: State,
+    running: &'a [u8],
+}
+
+/// What there is to see at one moment.
+#[derive(Debug)]
+pub struct View {
+    /// The noise as far as it shows.
+    pub snapshot: Snapshot,
+    /// The way from the sensor.
+    pub link: Link,
+    /// Samples taken of each sensor, gyroscope first.
+    pub samples: [u64; 2],
+    /// Whether the sensor is being moved; `None` as long as nobody can say.
+    pub moving: Option<bool>,
+    /// The last temperature, °C.
+    pub celsius: Option<f64>,
+    /// Moments that the user marked.
+    pub marks: Vec<Mark>,
+    /// Samples are passed over.
+    pub paused: bool,
+}
+
+impl Session {
+    /// Begins anew; `name` is what the sensor is called in messages.
+    #[must_use]
+    pub fn new(name: &str, options: &Options) -> Self {
+        Self {
+            name: name.to_owned(),
+            options: *options,
+            running: Running::new(options),
+            kept: State { name: name.to_owned(), ..State::default() },
+            taken: [None; 2],
+            before: Before::IsPast,
+            paused: false,
+        }
+    }
+
+    /// Goes on with what [`to_bytes`](Self::to_bytes) kept.
+    ///
+    /// # Errors
+    /// When the bytes are not such.
+    pub fn resume(
+        name: &str,
+        options: &Options,
+        bytes: &[u8],
+        before: Before,
+    ) -> Result<Self, Error> {
+        let kept = kept(bytes)?;
+        let running = Running::from_bytes(kept.running, options)?;
+        let state = State { resumed: kept.state.resumed + 1, ended: false, ..kept.state };
+        let taken = running.last_ns();
+        let session = Self { running, kept: state, taken, before, ..Self::new(name, options) };
+        Ok(session)
+    }
+
+    /// Whether bytes of [`to_bytes`](Self::to_bytes) are of a session that ended as it should.
+    ///
+    /// # Errors
+    /// When the bytes are not such.
+    pub fn has_ended(bytes: &[u8]) -> Result<bool, Error> {
+        kept(bytes).map(|kept| kept.state.ended)
+    }
+
+    /// The whole state, for a checkpoint; `ended`: it has come to its end.
+    ///
+    /// # Errors
+    /// When an encoder fails.
+    pub fn to_bytes(&self, ended: bool) -> Result<Vec<u8>, Error> {
+        let running = self.running.to_bytes()?;
+        let state = State { ended, ..self.kept.clone() };
+        postcard::to_stdvec(&Kept { state, running: &running })
+            .map_err(|e| Error::data(format!("the session cannot be kept: {e}")))
+    }
+
+    /// Takes samples, and leaves in `block` those that were taken.
+    pub fn take(&mut self, block: &mut Block) {
+        if self.taken != [None; 2] {
+            self.pass_over(block);
+        }
+        if self.paused {
+            block.clear();
+        }
+        let first = [block.gyroscope.first(), block.accelerometer.first()];
+        if let Some(first) = first.into_iter().flatten().map(|sample| sample.stamp_ns).min() {
+            self.kept.first_ns.get_or_insert(first);
+        }
+        if let Some(last) = block.temperature.last() {
+            self.kept.celsius = Some(last.celsius);
+        }
+        self.running.push(block);
+    }
+
+    /// Leaves out what was taken before the session went on.
+    fn pass_over(&mut self, block: &mut Block) {
+        let Block { gyroscope, accelerometer, .. } = block;
+        match self.before {
+            Before::ComesAgain => {
+                for (list, taken) in [gyroscope, accelerometer].into_iter().zip(&mut self.taken) {
+                    let Some(last) = *taken else { continue };
+                    let new = |s: &Sample| s.stamp_ns > last;
+                    let first = list.iter().position(new);
+                    list.drain(..first.unwrap_or(list.len()));
+                    if first.is_some() {
+                        *taken = None;
+                    }
+                }
+            }
+            Before::IsPast => {
+                let lists = [&*gyroscope, &*accelerometer];
+                let set_back = lists.into_iter().zip(self.taken).any(|(list, taken)| {
+                    list.first().zip(taken).is_some_and(|(s, last)| s.stamp_ns <= last)
+                });
+                if lists.into_iter().all(|list| list.is_empty()) {
+                    return;
+                }
+                self.taken = [None; 2];
+                if set_back {
+                    self.restart();
+                }
+            }
+        }
+    }
+
+    /// The sensor was switched off and on.
+    pub fn restart(&mut self) {
+        self.running.restart();
+    }
+
+    /// Marks this moment; its number, counted from 1.
+    pub fn mark(&mut self) -> usize {
+        let last = self.running.last_ns().into_iter().flatten().max();
+        let span =
+            last.zip(self.kept.first_ns).map_or(0, |(last, first)| last.saturating_sub(first));
+        if self.kept.marks.len() < MARKS {
+            self.kept.marks.push(Mark { at_s: span as f64 * 1e-9 });
+        }
+        self.kept.marks.len()
+    }
+
+    /// Passes over samples from now on, or takes them again; the time between is a gap.
+    pub fn pause(&mut self) {
+        self.paused = !self.paused;
+    }
+
+    /// Seconds of the sensor's time, gaps counted.
+    #[must_use]
+    pub fn span_s(&self) -> f64 {
+        let last = self.running.last_ns().into_iter().flatten().max();
+        last.zip(self.kept.first_ns)
+            .map_or(0.0, |(last, first)| last.saturating_sub(first) as f64 * 1e-9)
+    }
+
+    /// What there is to see.
+    #[must_use]
+    pub fn view(&self, link: &Link) -> View {
+        let mut snapshot = self.running.snapshot(&self.name);
+        self.add_remarks(&mut snapshot.calibration);
+        View {
+            snapshot,
+            link: link.clone(),
+            samples: self.running.samples(),
+            moving: self.running.is_moving(),
+            celsius: self.kept.celsius,
+            marks: self.kept.marks.clone(),
+            paused: self.paused,
+        }
+    }
+
+    /// What a reader of the report should know of the session.
+    fn add_remarks(&self, calibration: &mut Calibration) {
+        let State { marks, resumed, .. } = &self.kept;
+        if *resumed > 0 {
+            calibration.remarks.push(format!("went on from a checkpoint {resumed} times"));
+        }
+        for (number, mark) in (1..).zip(marks) {
+            calibration.remarks.push(format!("mark {number} at {:.1} s", mark.at_s));
+        }
+    }
+}
+
+fn kept(bytes: &[u8]) -> Result<Kept<'_>, Error> {
+    postcard::from_bytes(bytes)
+        .map_err(|e| Error::data(format!("the checkpoint holds no session: {e}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn block(range: std::ops::Range<i64>) -> Block {
+        let sample = |i: i64| Sample { stamp_ns: i * 1_000_000, value: [(i * i % 101) as f64; 3] };
+        Block { gyroscope: range.map(sample).collect(), ..Block::default() }
+    }
+
+    fn told(session: &Session) -> String {
+        format!("{:?}", session.view(&Link::default()).snapshot.calibration.gyroscope)
+    }
+
+    #[test]
+    fn what_comes_again_is_taken_once() {
+        let options = Options::default();
+        let mut whole = Session::new("it", &options);
+        whole.take(&mut block(0..9000));
+        let mut first = Session::new("it", &options);
+        first.take(&mut block(0..5003));
+        let bytes = first.to_bytes(false).unwrap();
+        assert!(!Session::has_ended(&bytes).unwrap());
+        let mut second = Session::resume("it", &options, &bytes, Before::ComesAgain).unwrap();
+        for from in [0, 4000, 8000] {
+            second.take(&mut block(from..9000.min(from + 4000)));
+        }
+        assert_eq!(told(&second), told(&whole));
+        assert_eq!(second.running.samples(), [9000, 0]);
+    }
+
+    #[test]
+    fn the_time_between_is_a_gap_and_a_clock_set_back_a_restart() {
+        let options = Options::default();
+        let mut first = Session::new("it", &options);
+        first.take(&mut block(0..5000));
+        let bytes = first.to_bytes(false).unwrap();
+        for (from, missing, records) in [(6000, 1000, 1), (100, 0, 2)] {
+            let mut second = Session::resume("it", &options, &bytes, Before::IsPast).unwrap();
+            second.take(&mut block(from..from + 5000));
+            let noise = second.view(&Link::default()).snapshot.calibration.gyroscope.unwrap();
+            assert_eq!((noise.stamps.missing, noise.record_means.len()), (missing, records));
+            assert_eq!(noise.stamps.samples, 10_000);
+        }
+    }
+
+    #[test]
+    fn a_pause_is_a_gap_and_marks_are_told() {
+        let mut session = Session::new("it", &Options::default());
+        session.take(&mut block(0..5000));
+        assert_eq!(session.mark(), 1);
+        session.pause();
+        let mut passed = block(5000..6000);
+        session.take(&mut passed);
+        assert!(passed.is_empty(), "what is passed over is not recorded either");
+        session.pause();
+        session.take(&mut block(6000..8000));
+        let calibration = session.view(&Link::default()).snapshot.calibration;
+        assert_eq!(calibration.gyroscope.unwrap().stamps.missing, 1000);
+        assert_eq!(calibration.remarks, ["mark 1 at 5.0 s"]);
+    }
+}
