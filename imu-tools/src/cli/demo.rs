@@ -4,8 +4,8 @@ use std::path::Path;
 
 use clap::Args;
 
-use super::calibrate::write_into;
 use super::progress;
+use super::results::write_into;
 use crate::calibrate::{Options, calibrate};
 use crate::error::Error;
 use crate::output::Output;

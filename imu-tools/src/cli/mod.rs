@@ -9,9 +9,11 @@ mod convert;
 mod demo;
 mod info;
 mod integrate;
+mod live;
 mod play;
 mod progress;
 mod reading;
+mod results;
 mod simulate;
 mod spline;
 mod terminal;
@@ -44,6 +46,7 @@ enum Command {
     Demo(demo::Demo),
     Info(info::Info),
     Integrate(integrate::Integrate),
+    Live(live::Live),
     Simulate(simulate::Simulate),
     Spline(spline::Spline),
     Tradeoff(tradeoff::Tradeoff),
@@ -67,6 +70,10 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Demo(demo) => demo.run(),
         Command::Info(info) => info.run(),
         Command::Integrate(integrate) => integrate.run(),
+        Command::Live(live) => match live.exit() {
+            Ok(Some(signal)) => return ExitCode::from(128_u8.saturating_add(signal as u8)),
+            ended => ended.map(drop),
+        },
         Command::Simulate(simulate) => simulate.run(),
         Command::Spline(spline) => spline.run(),
         Command::Tradeoff(tradeoff) => tradeoff.run(),

@@ -10,7 +10,11 @@ pub mod clock;
 pub mod goal;
 pub mod link;
 mod message;
+pub mod port;
 pub mod protocol;
+pub mod run;
+pub mod screen;
 pub mod session;
+mod shown;
 
 pub use message::{Count, Kind, Message, Ticks};

@@ -31,7 +31,6 @@ pub enum Before {
 /// A calibration while it runs.
 pub struct Session {
     name: String,
-    options: Options,
     running: Running,
     kept: State,
     /// Samples up to these stamps were taken before; `None`: not any more, or never.
@@ -85,7 +84,6 @@ impl Session {
     pub fn new(name: &str, options: &Options) -> Self {
         Self {
             name: name.to_owned(),
-            options: *options,
             running: Running::new(options),
             kept: State { name: name.to_owned(), ..State::default() },
             taken: [None; 2],

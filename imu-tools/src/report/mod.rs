@@ -4,7 +4,7 @@
 //! filters, [`csv`] for plots of one's own, [`plot`] for pictures, [`html`] for the report, [`demo`]
 //! for the comparison of several with the truth. All write a [`Calibration`](crate::calibrate::Calibration) into text.
 //! [`tradeoff`] shows what accuracy costs, [`integration`] where dead reckoning went,
-//! [`spline`](mod@spline) how far a curve is from poses.
+//! [`live`] shows a running session, [`spline`](mod@spline) how far a curve is from poses.
 
 pub mod csv;
 pub mod demo;
@@ -14,6 +14,7 @@ pub mod html;
 pub mod info;
 pub mod integration;
 pub mod json;
+pub mod live;
 pub mod plot;
 pub mod spline;
 pub mod table;

@@ -105,7 +105,7 @@ fn block(
 }
 
 /// A time as words, to the second.
-pub(super) fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     display_duration((seconds.clamp(0.0, 1e9).round() * 1e9) as u64)
 }
 

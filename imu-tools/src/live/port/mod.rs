@@ -1,0 +1,218 @@
+//! Where bytes or samples come from: a serial port, a pipe, a network connection, a recording replayed.
+//!
+//! Each is read on a thread of its own, which notes when bytes came and is never kept waiting by
+//! calculations. A device or connection that goes away is waited for and opened again.
+
+mod network;
+mod pipe;
+mod replay;
+mod serial;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+use crate::error::Error;
+use crate::recording::{Block, ReadOptions};
+pub use serial::available;
+
+/// Pieces that wait to be taken, at most: some seconds of any sensor.
+const AHEAD: usize = 1024;
+
+/// Bytes of a piece, at most.
+const PIECE: usize = 4096;
+
+/// What comes out of a port.
+#[derive(Debug)]
+pub enum Arrival {
+    /// Bytes, and when the last of them came, host time in nanoseconds since 1970.
+    Bytes {
+        /// When.
+        arrival_ns: i64,
+        /// What.
+        bytes: Vec<u8>,
+    },
+    /// Samples of a recording.
+    Samples(Block),
+    /// The device went away, in words; it is waited for.
+    Gone(String),
+    /// It is there again.
+    Back,
+    /// There is nothing more.
+    End,
+    /// It cannot be read on.
+    Failed(Error),
+}
+
+/// A port that is being read.
+pub struct Port {
+    /// What it is called in messages.
+    pub name: String,
+    /// What comes out.
+    pub arrivals: Receiver<Arrival>,
+}
+
+/// What a user names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Address {
+    /// A serial device.
+    Serial(PathBuf),
+    /// The standard input, or a named pipe.
+    Pipe(PathBuf),
+    /// `host:port` of a network.
+    Tcp(String),
+    /// A recording, to be replayed.
+    Recording(PathBuf),
+}
+
+impl Address {
+    /// What `text` names: `-`, `tcp://host:port`, `auto` (the only serial port there is), a device, or a
+    /// recording.
+    ///
+    /// # Errors
+    /// When there is no such port; the sentence lists those that exist.
+    pub fn of(text: &str) -> Result<Self, Error> {
+        if text == "-" {
+            return Ok(Self::Pipe(text.into()));
+        }
+        if let Some(address) = text.strip_prefix("tcp://") {
+            if address.rsplit_once(':').is_none_or(|(_, port)| port.parse::<u16>().is_err()) {
+                return Err(Error::usage(format!(
+                    "{text} lacks a port: write it as tcp://host:4000"
+                )));
+            }
+            return Ok(Self::Tcp(address.to_owned()));
+        }
+        if text == "auto" {
+            return serial::only_one().map(Self::Serial);
+        }
+        let path = Path::new(text);
+        match fs::metadata(path) {
+            Ok(there) if there.is_dir() || there.is_file() => Ok(Self::Recording(path.to_owned())),
+            Ok(there) if is_pipe(&there) => Ok(Self::Pipe(path.to_owned())),
+            Ok(_) => Ok(Self::Serial(path.to_owned())),
+            // The names of serial ports of Windows are no files.
+            Err(_) if cfg!(windows) => Ok(Self::Serial(path.to_owned())),
+            Err(_) => Err(serial::no_such(text)),
+        }
+    }
+
+    /// Whether the same samples come again when it is opened again.
+    #[must_use]
+    pub const fn comes_again(&self) -> bool {
+        matches!(self, Self::Recording(_))
+    }
+
+    /// What it is called in messages.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self {
+            Self::Pipe(path) if path == Path::new("-") => "the pipe".into(),
+            Self::Tcp(address) => format!("tcp://{address}"),
+            Self::Serial(path) | Self::Pipe(path) | Self::Recording(path) => {
+                path.display().to_string()
+            }
+        }
+    }
+}
+
+#[cfg(unix)]
+fn is_pipe(there: &fs::Metadata) -> bool {
+    use std::os::unix::fs::FileTypeExt as _;
+    there.file_type().is_fifo()
+}
+
+#[cfg(not(unix))]
+fn is_pipe(_: &fs::Metadata) -> bool {
+    false
+}
+
+/// How to open a port.
+#[derive(Clone, Debug, Default)]
+pub struct How {
+    /// Bits a second of a serial port; `None` tries the usual ones.
+    pub baud: Option<u32>,
+    /// How to read a recording.
+    pub reading: ReadOptions,
+    /// How many times faster than it was recorded a recording comes; 0: as fast as can be.
+    pub speed: f64,
+}
+
+/// The part of some bytes that no known protocol explains; `None` where they are too few to say.
+pub type Refused<'a> = &'a dyn Fn(&[u8]) -> Option<f64>;
+
+/// Opens a port and begins to read it. `refused` tells a wrong baud rate from a right one.
+///
+/// # Errors
+/// When it cannot be opened: one sentence with the way out.
+pub fn open(address: &Address, how: &How, refused: Refused<'_>) -> Result<Port, Error> {
+    let (to, arrivals) = sync_channel(AHEAD);
+    match address {
+        Address::Serial(path) => serial::open(path, how.baud, refused, to)?,
+        Address::Pipe(path) => pipe::open(path, to)?,
+        Address::Tcp(address) => network::open(address, to)?,
+        Address::Recording(path) => replay::open(path, how, to)?,
+    }
+    Ok(Port { name: address.name(), arrivals })
+}
+
+/// Host time that goes on evenly, whatever happens to the clock on the wall while it is read.
+struct HostClock {
+    start: Instant,
+    start_ns: i64,
+}
+
+impl HostClock {
+    fn new() -> Self {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        Self {
+            start: Instant::now(),
+            start_ns: i64::try_from(since.as_nanos()).unwrap_or(i64::MAX / 2),
+        }
+    }
+
+    fn now_ns(&self) -> i64 {
+        let passed = i64::try_from(self.start.elapsed().as_nanos()).unwrap_or(i64::MAX / 2);
+        self.start_ns.saturating_add(passed)
+    }
+}
+
+/// Reads pieces until the end (`Ok`), a failure, or until nobody listens (`None`).
+fn pump(
+    mut read: impl FnMut(&mut [u8]) -> std::io::Result<usize>,
+    clock: &HostClock,
+    to: &SyncSender<Arrival>,
+) -> Option<std::io::Result<()>> {
+    use std::io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
+    let mut buffer = [0; PIECE];
+    loop {
+        let bytes = match read(&mut buffer) {
+            Ok(0) => return Some(Ok(())),
+            Ok(n) => buffer.get(..n).unwrap_or_default().to_vec(),
+            Err(e) if matches!(e.kind(), Interrupted | TimedOut | WouldBlock) => Vec::new(),
+            Err(e) => return Some(Err(e)),
+        };
+        // An empty piece asks whether somebody listens still.
+        if to.send(Arrival::Bytes { arrival_ns: clock.now_ns(), bytes }).is_err() {
+            return None;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_named() {
+        assert_eq!(Address::of("-").unwrap(), Address::Pipe("-".into()));
+        assert_eq!(Address::of("tcp://imu.local:4000").unwrap().name(), "tcp://imu.local:4000");
+        assert_eq!(Address::of("tcp://imu.local").unwrap_err().exit_code(), 2);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().to_str().unwrap();
+        assert!(Address::of(path).unwrap().comes_again());
+        let error = Address::of("/dev/no-such-port").unwrap_err().to_string();
+        assert!(error.starts_with("there is no port or recording /dev/no-such-port"), "{error}");
+    }
+}

@@ -1,0 +1,72 @@
+//! A network connection: a serial server, or a program that forwards bytes. Opened again when it closes.
+
+use std::io::{self, Read as _};
+use std::net::{TcpStream, ToSocketAddrs as _};
+use std::sync::mpsc::SyncSender;
+use std::time::Duration;
+
+use super::{Arrival, HostClock, pump};
+use crate::error::Error;
+
+/// How long to wait for an answer, and between attempts.
+const PATIENCE: Duration = Duration::from_secs(5);
+const PAUSE: Duration = Duration::from_millis(500);
+
+fn connect(address: &str) -> io::Result<TcpStream> {
+    let mut last = io::Error::from(io::ErrorKind::NotFound);
+    for address in address.to_socket_addrs()? {
+        match TcpStream::connect_timeout(&address, PATIENCE) {
+            Ok(stream) => {
+                stream.set_read_timeout(Some(PAUSE))?;
+                return Ok(stream);
+            }
+            Err(error) => last = error,
+        }
+    }
+    Err(last)
+}
+
+/// Connects, and begins to read.
+pub(super) fn open(address: &str, to: SyncSender<Arrival>) -> Result<(), Error> {
+    let first = connect(address).map_err(|e| {
+        let why = match e.kind() {
+            io::ErrorKind::ConnectionRefused => "nobody listens at that port".to_owned(),
+            io::ErrorKind::TimedOut => "there is no answer".to_owned(),
+            _ => e.to_string(),
+        };
+        Error::data(format!("cannot connect to tcp://{address}: {why}; see that the server runs"))
+    })?;
+    let address = address.to_owned();
+    std::thread::spawn(move || {
+        let clock = HostClock::new();
+        let mut stream = first;
+        loop {
+            let why = match pump(|buffer| stream.read(buffer), &clock, &to) {
+                None => return,
+                Some(Ok(())) => "the connection was closed".to_owned(),
+                Some(Err(error)) => error.to_string(),
+            };
+            if to.send(Arrival::Gone(why)).is_err() {
+                return;
+            }
+            stream = loop {
+                std::thread::sleep(PAUSE);
+                match connect(&address) {
+                    Ok(stream) => break stream,
+                    // Somebody must still want it.
+                    Err(_) => {
+                        let nothing =
+                            Arrival::Bytes { arrival_ns: clock.now_ns(), bytes: Vec::new() };
+                        if to.send(nothing).is_err() {
+                            return;
+                        }
+                    }
+                }
+            };
+            if to.send(Arrival::Back).is_err() {
+                return;
+            }
+        }
+    });
+    Ok(())
+}

@@ -1,0 +1,79 @@
+//! A recording in the place of a sensor, as fast as it was recorded, faster, or as fast as can be.
+
+use std::path::Path;
+use std::sync::mpsc::SyncSender;
+use std::time::{Duration, Instant};
+
+use super::{Arrival, How};
+use crate::error::Error;
+use crate::recording::{self, Block, Sample, Source};
+
+/// Real time between pieces of a replay that keeps time.
+const PACE: Duration = Duration::from_millis(50);
+
+/// Opens the recording, and begins to read.
+pub(super) fn open(path: &Path, how: &How, to: SyncSender<Arrival>) -> Result<(), Error> {
+    let source = recording::open(path, &how.reading)?;
+    let speed = how.speed;
+    std::thread::spawn(move || {
+        let told = match play(source, speed, &to) {
+            None => return,
+            Some(Ok(())) => Arrival::End,
+            Some(Err(error)) => Arrival::Failed(error),
+        };
+        // Nobody may listen any more.
+        let _ = to.send(told);
+    });
+    Ok(())
+}
+
+/// Hands all blocks on; `None` when nobody listens.
+fn play(
+    mut source: Box<dyn Source>,
+    speed: f64,
+    to: &SyncSender<Arrival>,
+) -> Option<Result<(), Error>> {
+    let mut start = None;
+    loop {
+        let mut block = Block::default();
+        match source.next_block(&mut block) {
+            Err(error) => return Some(Err(error)),
+            Ok(false) => return Some(Ok(())),
+            Ok(true) if speed > 0.0 => {
+                let (began, first_ns) = match (start, first(&block)) {
+                    (Some(start), _) => start,
+                    (None, Some(first_ns)) => (Instant::now(), first_ns),
+                    (None, None) => continue,
+                };
+                start = Some((began, first_ns));
+                while !block.is_empty() {
+                    let passed = began.elapsed().as_secs_f64() * speed * 1e9;
+                    let now = before(&mut block, first_ns.saturating_add(passed as i64));
+                    if !now.is_empty() {
+                        to.send(Arrival::Samples(now)).ok()?;
+                    }
+                    std::thread::sleep(PACE);
+                }
+            }
+            Ok(true) => to.send(Arrival::Samples(block)).ok()?,
+        }
+    }
+}
+
+fn first(block: &Block) -> Option<i64> {
+    let first = [block.gyroscope.first(), block.accelerometer.first()];
+    first.into_iter().flatten().map(|sample| sample.stamp_ns).min()
+}
+
+/// Takes out of a block what is stamped up to `until_ns`.
+fn before(block: &mut Block, until_ns: i64) -> Block {
+    let split = |list: &mut Vec<Sample>| {
+        let later = list.iter().position(|sample| sample.stamp_ns > until_ns);
+        list.drain(..later.unwrap_or(list.len())).collect()
+    };
+    let gyroscope = split(&mut block.gyroscope);
+    let accelerometer = split(&mut block.accelerometer);
+    let later = block.temperature.iter().position(|t| t.stamp_ns > until_ns);
+    let temperature = block.temperature.drain(..later.unwrap_or(block.temperature.len())).collect();
+    Block { gyroscope, accelerometer, temperature, ..Block::default() }
+}

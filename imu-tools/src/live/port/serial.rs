@@ -1,0 +1,221 @@
+//! A serial device: found or named, its baud rate given or tried, opened again when it comes back.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::SyncSender;
+use std::time::{Duration, Instant};
+
+use serial2::SerialPort;
+
+use super::{Arrival, HostClock, PIECE, Refused, pump};
+use crate::error::Error;
+
+/// Usual baud rates, the most usual first.
+const RATES: [u32; 9] =
+    [115_200, 921_600, 460_800, 230_400, 9_600, 57_600, 38_400, 19_200, 1_000_000];
+
+/// How long each is listened to.
+const TRIAL: Duration = Duration::from_millis(700);
+
+/// Bytes that are enough to judge a rate.
+const ENOUGH: usize = 2048;
+
+/// More than this part of the bytes refused: the rate is wrong, or the protocol unknown.
+const TOO_MANY: f64 = 0.3;
+
+/// How long a read waits, and the time between attempts to open a device that went away.
+const PAUSE: Duration = Duration::from_millis(200);
+
+/// The serial ports that exist.
+#[must_use]
+pub fn available() -> Vec<PathBuf> {
+    let mut ports = SerialPort::available_ports().unwrap_or_default();
+    ports.sort();
+    ports
+}
+
+/// They, in words.
+fn list() -> String {
+    match available().as_slice() {
+        [] => "there is no serial port now; plug the sensor in".to_owned(),
+        ports => {
+            let names: Vec<String> = ports.iter().map(|port| port.display().to_string()).collect();
+            format!("the serial ports are {}", names.join(", "))
+        }
+    }
+}
+
+/// The only serial port.
+pub(super) fn only_one() -> Result<PathBuf, Error> {
+    match available().as_slice() {
+        [port] => Ok(port.clone()),
+        [] => Err(Error::data("no serial port is found: plug the sensor in, or name its port")),
+        _ => Err(Error::usage(format!("there are several; name one: {}", list()))),
+    }
+}
+
+/// Nothing is called so.
+pub(super) fn no_such(name: &str) -> Error {
+    Error::data(format!("there is no port or recording {name}: {}", list()))
+}
+
+/// Why a port cannot be opened, and the way out.
+fn refusal(path: &Path, error: &io::Error) -> Error {
+    let name = path.display();
+    match error.kind() {
+        io::ErrorKind::NotFound => no_such(&name.to_string()),
+        io::ErrorKind::PermissionDenied => match group(path) {
+            Some(group) => Error::data(format!(
+                "no permission to open {name}: it belongs to the group {group}; say \
+                 sudo usermod -aG {group} $USER, log out and in again"
+            )),
+            None => Error::data(format!(
+                "no permission to open {name}: ask who administers this computer"
+            )),
+        },
+        io::ErrorKind::ResourceBusy => Error::data(format!(
+            "{name} is busy: another program has it open (a serial monitor, ModemManager, another imu \
+             live); end that first"
+        )),
+        _ => Error::data(format!("cannot open {name}: {error}")),
+    }
+}
+
+/// The group of a device by name.
+#[cfg(unix)]
+fn group(path: &Path) -> Option<String> {
+    use std::os::unix::fs::MetadataExt as _;
+    let id = fs::metadata(path).ok()?.gid().to_string();
+    let groups = fs::read_to_string("/etc/group").ok()?;
+    let named = groups.lines().find_map(|line| {
+        let mut fields = line.split(':');
+        let name = fields.next()?;
+        (fields.nth(1)? == id).then(|| name.to_owned())
+    });
+    named.filter(|group| group != "root")
+}
+
+#[cfg(not(unix))]
+fn group(_: &Path) -> Option<String> {
+    None
+}
+
+/// Opens a device that nobody else has.
+fn connect(path: &Path, baud: u32) -> io::Result<SerialPort> {
+    let mut port = SerialPort::open(path, baud)?;
+    port.set_read_timeout(PAUSE)?;
+    Ok(port)
+}
+
+/// The rate at which least of the bytes is refused.
+fn find_rate(path: &Path, refused: Refused<'_>) -> Result<u32, Error> {
+    let mut best: Option<(f64, u32)> = None;
+    let mut heard = Vec::new();
+    for rate in RATES {
+        let port = match connect(path, rate) {
+            Ok(port) => port,
+            // Not every adapter has every rate.
+            Err(e) if e.kind() == io::ErrorKind::InvalidInput => continue,
+            Err(e) => return Err(refusal(path, &e)),
+        };
+        let bytes = listen(&port);
+        if let Some(share) = refused(&bytes) {
+            if share < TOO_MANY {
+                return Ok(rate);
+            }
+            if best.is_none_or(|(least, _)| share < least) {
+                best = Some((share, rate));
+            }
+        }
+        if bytes.len() > heard.len() {
+            heard = bytes;
+        }
+    }
+    let name = path.display();
+    if heard.is_empty() {
+        return Err(Error::data(format!(
+            "{name} is silent at all usual baud rates: see that the sensor has power and sends by \
+             itself, or give its rate with --baud"
+        )));
+    }
+    Err(Error::data(format!(
+        "what {name} sends is of no known protocol at any usual baud rate: give --baud and --protocol; \
+         the first bytes are {}",
+        super::super::shown::bytes(&heard)
+    )))
+}
+
+/// What comes in a short time.
+fn listen(port: &SerialPort) -> Vec<u8> {
+    let (start, mut bytes, mut buffer) = (Instant::now(), Vec::new(), [0; PIECE]);
+    while start.elapsed() < TRIAL && bytes.len() < ENOUGH {
+        match port.read(&mut buffer) {
+            Ok(0) => break,
+            Ok(n) => bytes.extend_from_slice(buffer.get(..n).unwrap_or_default()),
+            Err(e) if e.kind() == io::ErrorKind::TimedOut => {}
+            Err(_) => break,
+        }
+    }
+    bytes
+}
+
+/// Opens the device, and begins to read.
+pub(super) fn open(
+    path: &Path,
+    baud: Option<u32>,
+    refused: Refused<'_>,
+    to: SyncSender<Arrival>,
+) -> Result<(), Error> {
+    let baud = match baud {
+        Some(baud) => baud,
+        None => find_rate(path, refused)?,
+    };
+    let mut port = connect(path, baud).map_err(|e| refusal(path, &e))?;
+    let path = path.to_owned();
+    std::thread::spawn(move || {
+        let clock = HostClock::new();
+        loop {
+            let why = match pump(|buffer| port.read(buffer), &clock, &to) {
+                None => return,
+                Some(Ok(())) => "it was unplugged".to_owned(),
+                Some(Err(error)) => format!("it was unplugged ({error})"),
+            };
+            if to.send(Arrival::Gone(why)).is_err() {
+                return;
+            }
+            drop(port);
+            port = loop {
+                std::thread::sleep(PAUSE);
+                match connect(&path, baud) {
+                    Ok(port) => break port,
+                    Err(_) => {
+                        let nothing =
+                            Arrival::Bytes { arrival_ns: clock.now_ns(), bytes: Vec::new() };
+                        if to.send(nothing).is_err() {
+                            return;
+                        }
+                    }
+                }
+            };
+            if to.send(Arrival::Back).is_err() {
+                return;
+            }
+        }
+    });
+    Ok(())
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refusals_say_the_way_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let said = |kind: io::ErrorKind| refusal(folder.path(), &kind.into()).to_string();
+        assert!(said(io::ErrorKind::ResourceBusy).contains("another program has it open"));
+        assert!(said(io::ErrorKind::PermissionDenied).contains("no permission to open"));
+        assert!(said(io::ErrorKind::NotFound).contains("there is no port or recording"));
+    }
+}

@@ -1,0 +1,291 @@
+//! The loop of a live session: what arrives goes into the calibration, the recording and the checkpoint;
+//! now and then it is shown.
+
+use std::path::PathBuf;
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::{Duration, Instant};
+
+use super::checkpoint;
+use super::goal::Goal;
+use super::link::Link;
+use super::port::{Arrival, Port};
+use super::session::{Session, View};
+use crate::error::Error;
+use crate::output::{Output, end_is_asked};
+use crate::recording::{Block, Sink};
+
+/// Keys and signals are looked at so often.
+const GLANCE: Duration = Duration::from_millis(50);
+
+/// Recordings are brought to the disk so often.
+const FLUSH: Duration = Duration::from_secs(1);
+
+/// The time between views is this many times what a view takes, at least.
+const REST: u32 = 50;
+
+/// The goal is looked at whenever the record has grown by this part, whatever the time on the wall.
+const GROWTH: f64 = 1.02;
+
+/// What became of bytes.
+#[derive(Debug)]
+pub enum Step {
+    /// Samples.
+    Samples(Block),
+    /// The sensor was switched off and on.
+    Restart,
+}
+
+/// From bytes to samples.
+pub trait Decode {
+    /// Takes bytes whose last one came at `arrival_ns`, and appends what became of them.
+    ///
+    /// # Errors
+    /// When they are of no known protocol.
+    fn feed(&mut self, arrival_ns: i64, bytes: &[u8], to: &mut Vec<Step>) -> Result<(), Error>;
+
+    /// Fills in what is known of the way.
+    fn tell(&self, link: &mut Link);
+}
+
+/// What the user wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// A checkpoint and the results now.
+    Save,
+    /// Pass over samples, or take them again.
+    Pause,
+    /// Mark this moment.
+    Mark,
+    /// End with the report.
+    Quit,
+}
+
+/// Who shows a session to the user.
+pub trait Face {
+    /// The time between views.
+    fn every(&self) -> Duration;
+
+    /// Shows what there is to see.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    fn show(&mut self, view: &View) -> Result<(), Error>;
+
+    /// A sentence.
+    fn say(&mut self, sentence: &str);
+
+    /// A key that was pressed.
+    fn key(&mut self) -> Option<Key> {
+        None
+    }
+}
+
+/// Why a session ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// It reached its goal.
+    Goal,
+    /// There is nothing more to read.
+    Input,
+    /// The user ended it.
+    Quit,
+    /// A signal of this number did.
+    Signal(i32),
+}
+
+/// What is kept of a session.
+#[derive(Default)]
+pub struct Keep {
+    /// The checkpoint's file, and the time between checkpoints.
+    pub checkpoint: Option<(PathBuf, Duration)>,
+    /// The samples.
+    pub record: Option<Box<dyn Sink>>,
+    /// The bytes.
+    pub raw: Option<Output>,
+}
+
+impl Keep {
+    fn checkpoint(&self, session: &Session, ended: bool) -> Result<(), Error> {
+        match &self.checkpoint {
+            Some((path, _)) => checkpoint::write(path, &session.to_bytes(ended)?),
+            None => Ok(()),
+        }
+    }
+
+    fn flush(&mut self) -> Result<(), Error> {
+        if let Some(record) = &mut self.record {
+            record.flush()?;
+        }
+        self.raw.as_mut().map_or(Ok(()), Output::sync)
+    }
+
+    /// Completes the files.
+    fn close(self) -> Result<(), Error> {
+        let record = self.record.map_or(Ok(()), Sink::finish);
+        let raw = self.raw.map_or(Ok(()), Output::finish);
+        record.and(raw)
+    }
+}
+
+/// A session, and all that it is connected with.
+pub struct Live<'a> {
+    /// The calibration.
+    pub session: Session,
+    /// Where it comes from.
+    pub port: Port,
+    /// What makes samples of bytes.
+    pub decode: Option<Box<dyn Decode + 'a>>,
+    /// What is kept.
+    pub keep: Keep,
+    /// When it is enough.
+    pub goal: Goal,
+    /// What is done when the user saves, beside a checkpoint.
+    pub save: &'a mut dyn FnMut(&View) -> Result<String, Error>,
+}
+
+impl Live<'_> {
+    /// Runs until an end; the last view, and why it ended. Whatever ends it, checkpoint and recordings are
+    /// complete.
+    ///
+    /// # Errors
+    /// What the port says, or when something cannot be written.
+    pub fn run(mut self, face: &mut dyn Face) -> Result<(View, Ended), Error> {
+        let mut link = Link { name: self.port.name.clone(), ..Link::default() };
+        let ended = self.follow(face, &mut link);
+        let over = matches!(ended, Ok(Ended::Goal | Ended::Input | Ended::Quit));
+        let kept = self.keep.checkpoint(&self.session, over);
+        let closed = self.keep.close();
+        let ended = ended?;
+        kept.and(closed)?;
+        Ok((self.session.view(&link), ended))
+    }
+
+    fn follow(&mut self, face: &mut dyn Face, link: &mut Link) -> Result<Ended, Error> {
+        let (mut shown, mut flushed, mut kept) = (Instant::now(), Instant::now(), Instant::now());
+        let (mut between, mut look_at_s) = (face.every(), 0.0);
+        loop {
+            match self.port.arrivals.recv_timeout(GLANCE) {
+                Ok(arrival) => {
+                    if !self.arrive(arrival, face, link)? {
+                        return Ok(Ended::Input);
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(Error::data(format!("{} is not read any more", link.name)));
+                }
+            }
+            if let Some(signal) = end_is_asked() {
+                return Ok(Ended::Signal(signal));
+            }
+            if flushed.elapsed() >= FLUSH {
+                self.keep.flush()?;
+                flushed = Instant::now();
+            }
+            if let Some((_, every)) = &self.keep.checkpoint
+                && kept.elapsed() >= *every
+            {
+                self.keep.checkpoint(&self.session, false)?;
+                kept = Instant::now();
+            }
+            if !self.goal.is_none() && self.session.span_s() >= look_at_s {
+                look_at_s = (GROWTH * self.session.span_s()).max(10.0);
+                look_at_s = self.goal.span_s.map_or(look_at_s, |goal| {
+                    if self.session.span_s() < goal { look_at_s.min(goal) } else { look_at_s }
+                });
+                if self.goal.is_reached(&self.session.view(link).snapshot.calibration) {
+                    return Ok(Ended::Goal);
+                }
+            }
+            if let Some(key) = face.key() {
+                if key == Key::Quit {
+                    return Ok(Ended::Quit);
+                }
+                self.press(key, face, link)?;
+                between = Duration::ZERO;
+            }
+            if shown.elapsed() >= between {
+                let start = Instant::now();
+                face.show(&self.view(link))?;
+                shown = Instant::now();
+                between = face.every().max(start.elapsed() * REST);
+            }
+        }
+    }
+
+    fn view(&self, link: &mut Link) -> View {
+        if let Some(decode) = &self.decode {
+            decode.tell(link);
+        }
+        self.session.view(link)
+    }
+
+    /// Takes what arrived; `false` at the end.
+    fn arrive(
+        &mut self,
+        arrival: Arrival,
+        face: &mut dyn Face,
+        link: &mut Link,
+    ) -> Result<bool, Error> {
+        match arrival {
+            Arrival::Bytes { arrival_ns, bytes } => {
+                if let Some(raw) = &mut self.keep.raw {
+                    raw.write(&bytes)?;
+                }
+                let mut steps = Vec::new();
+                if let Some(decode) = &mut self.decode {
+                    decode.feed(arrival_ns, &bytes, &mut steps)?;
+                }
+                for step in steps {
+                    match step {
+                        Step::Samples(block) => self.take(block)?,
+                        Step::Restart => self.session.restart(),
+                    }
+                }
+            }
+            Arrival::Samples(block) => self.take(block)?,
+            Arrival::Gone(why) => {
+                face.say(&format!("{}: {why}; waiting for it to come back", link.name));
+                link.gone = Some(why);
+            }
+            Arrival::Back => {
+                face.say(&format!("{} is back", link.name));
+                link.gone = None;
+            }
+            Arrival::End => return Ok(false),
+            Arrival::Failed(error) => return Err(error),
+        }
+        Ok(true)
+    }
+
+    fn take(&mut self, mut block: Block) -> Result<(), Error> {
+        self.session.take(&mut block);
+        match &mut self.keep.record {
+            Some(record) if !block.is_empty() => record.write_block(&block),
+            _ => Ok(()),
+        }
+    }
+
+    fn press(&mut self, key: Key, face: &mut dyn Face, link: &mut Link) -> Result<(), Error> {
+        match key {
+            Key::Save => {
+                self.keep.checkpoint(&self.session, false)?;
+                self.keep.flush()?;
+                let view = self.view(link);
+                let said = (self.save)(&view)?;
+                face.say(&said);
+            }
+            Key::Pause => self.session.pause(),
+            Key::Mark => {
+                let number = self.session.mark();
+                face.say(&format!("mark {number} at {:.1} s", self.session.span_s()));
+            }
+            Key::Quit => {}
+        }
+        Ok(())
+    }
+}
+
+#[cfg(all(test, target_os = "linux"))]
+#[path = "run_tests.rs"]
+mod tests;
