@@ -129,6 +129,12 @@ impl Live {
             let wanted = self.resume || !address.comes_again();
             wanted.then(|| PathBuf::from(CHECKPOINT))
         });
+        if !address.comes_again() {
+            return Err(Error::usage(format!(
+                "{}: only recordings can be followed as yet, and no bytes of a sensor",
+                address.name()
+            )));
+        }
         output::heed_signals();
         let session = self.session(&address, &options, checkpoint.as_deref())?;
         let how = How { baud: self.baud, reading: self.reading.options(), speed: self.speed };

@@ -51,7 +51,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, sensor: &SensorNoise, colo
     // Intervals of the longest averaging times may be wide: a decade of them is enough.
     let (bottom, top) = (least(|p| p.low.max(p.value - 0.5)), most(|p| p.high.min(p.value + 0.5)));
     let unit = sensor.kind.unit();
-    let title = format!(" {} Allan deviation, {unit} ", sensor.kind.name());
+    let title = format!(" {} Allan deviation, {unit}, over s ", sensor.kind.name());
     let block = Block::new().borders(Borders::TOP | Borders::LEFT).title(title);
     if !(left < right && bottom.is_finite() && top.is_finite()) {
         frame.render_widget(block, area);
@@ -107,6 +107,6 @@ fn print_scales(canvas: &mut Context<'_>, x: [f64; 2], y: [f64; 2]) {
         canvas.print(x[0], f64::from(power), format!("1e{power}"));
     }
     for power in decades(x) {
-        canvas.print(f64::from(power), y[0], format!("1e{power}s"));
+        canvas.print(f64::from(power), y[0], format!("1e{power}"));
     }
 }

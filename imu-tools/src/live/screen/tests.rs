@@ -63,7 +63,7 @@ fn all_that_is_known_is_on_screens_of_any_size() {
             "31.2 °C",
             "mark 1 at 5.0 s",
             "s save   p pause   m mark   q quit",
-            "1e0s",
+            "1e0 ",
         ] {
             assert!(text.contains(wanted), "{wanted} on {width}x{height}:\n{text}");
         }

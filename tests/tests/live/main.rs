@@ -1,0 +1,3 @@
+//! Streams: `imu live` and what it is made of.
+
+mod session;
