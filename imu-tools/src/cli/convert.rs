@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
-use super::progress;
 use super::reading::{Opened, Reading};
+use super::{play, progress};
 use crate::error::Error;
 use crate::output;
 use crate::recording::euroc::data_file;
-use crate::recording::{Converted, Format, convert};
+use crate::recording::{self, Contents, Converted, Format, convert};
 use crate::scene::display_duration;
 
 const EXAMPLES: &str = "\
@@ -83,11 +83,14 @@ impl Convert {
             )));
         }
         let Opened { source, names } = self.reading.open(from)?;
-        let sink = super::create(to, Some(format))?;
+        let contents =
+            Contents { samples: source.samples().unwrap_or_default(), temperature: false };
+        let sink = recording::create_with(to, format, contents)?;
         let bar = progress::bytes(source.bytes_total(), "converting");
         let mut converted =
             convert(source, &names.join(", "), sink, |bytes| bar.set_position(bytes))?;
         bar.finish_and_clear();
+        converted.left_out.extend(play::unsaid(format, contents));
         if format == Format::Bag && (to_pipe || !to.is_file()) {
             converted.left_out.push(
                 "a bag in a pipe does not say where its index is: `rosbag reindex` mends that where \

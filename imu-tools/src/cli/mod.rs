@@ -28,7 +28,6 @@ use clap::{Parser, Subcommand};
 
 use crate::error::Error;
 use crate::output;
-use crate::recording::{self, Format, Sink};
 use terminal::{print, say};
 
 /// Calibrate an IMU's noise, or simulate one: from a recording to noise numbers to trust.
@@ -87,14 +86,6 @@ fn run_with(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             say(&format!("imu: {error}"));
             ExitCode::from(error.exit_code())
         }
-    }
-}
-
-/// Starts a recording at `path`: in `format`, or in that which its name says.
-fn create(path: &Path, format: Option<Format>) -> Result<Box<dyn Sink>, Error> {
-    match format {
-        Some(format) => recording::create_as(path, format),
-        None => recording::create(path),
     }
 }
 

@@ -82,7 +82,7 @@ pub(super) fn say_notes(notes: &[Note]) {
 }
 
 /// What a recording of this format cannot say of its contents.
-fn unsaid(format: Format, contents: Contents) -> Option<String> {
+pub(super) fn unsaid(format: Format, contents: Contents) -> Option<String> {
     let Contents { samples, temperature } = contents;
     let kind = match (format, samples) {
         (_, SampleKind::Instantaneous) | (Format::Csv | Format::Euroc, _) => None,

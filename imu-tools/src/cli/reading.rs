@@ -23,10 +23,10 @@ pub(super) struct Reading {
     /// Columns of a CSV by name: t=stamp,gx=omega.x,… (also sec and nsec, or date and t; temp)
     #[arg(long, value_name = "KEY=NAME,…", conflicts_with = "columns")]
     map: Option<String>,
-    /// Unit of angular rate: rad/s, mrad/s, deg/s, mdeg/s, deg/h
+    /// Unit of angular rate: rad/s, mrad/s, deg/s, mdeg/s, deg/h (of increments: deg/s of deg)
     #[arg(long, value_name = "UNIT")]
     gyro_unit: Option<RateUnit>,
-    /// Unit of specific force: m/s^2, g, mg
+    /// Unit of specific force: m/s^2, g, mg (of increments: m/s^2 of m/s)
     #[arg(long, value_name = "UNIT")]
     accel_unit: Option<ForceUnit>,
     /// Unit of time in a CSV: s, ms, us, ns

@@ -25,25 +25,17 @@ pub(super) fn hole(at_s: f64, long_s: f64, crossed: bool, has_truth: bool) -> St
 
 /// What is wrong with samples that are said to be of one kind, and of which the recording tells another.
 pub(super) fn other_kind(path: &str, said: Kind, told: SampleKind) -> Option<String> {
-    let mend = match (told, said) {
-        (SampleKind::Instantaneous, Kind::Instantaneous) | (SampleKind::Mean, Kind::Mean) => {
-            return None;
-        }
-        (SampleKind::Instantaneous, Kind::Mean) => "take --samples instantaneous",
-        (SampleKind::Mean, Kind::Instantaneous) => "take --samples mean",
-        (SampleKind::Increments, _) => {
-            "divide them by the time between samples, and take --samples mean"
-        }
+    let (told, samples) = match told {
+        SampleKind::Instantaneous => (Kind::Instantaneous, "instantaneous"),
+        // A reader has divided increments by their time.
+        SampleKind::Mean | SampleKind::Increments => (Kind::Mean, "means"),
     };
-    Some(format!(
-        "the samples of {path} are said to be {said}, and by its header they are {}: {mend}, or --columns if \
-         the header is wrong",
-        match told {
-            SampleKind::Instantaneous => "instantaneous",
-            SampleKind::Mean => "means",
-            SampleKind::Increments => "increments",
-        }
-    ))
+    (told != said).then(|| {
+        format!(
+            "the samples of {path} are said to be {said}, and by its header they are {samples}: take --samples \
+             {told}, or --columns if the header is wrong"
+        )
+    })
 }
 
 /// Why nothing was integrated.

@@ -185,7 +185,8 @@ pub trait Source: Send {
     /// Takes what there is to tell since the last call; complete once the end was reached.
     fn take_notes(&mut self) -> Vec<Note>;
 
-    /// What the recording says that its samples are, where it does.
+    /// What the recording says that its samples are, where it does. Never increments: readers divide them
+    /// by their time, and give means.
     fn samples(&self) -> Option<SampleKind> {
         None
     }

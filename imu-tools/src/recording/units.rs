@@ -91,6 +91,26 @@ impl RateUnit {
         }
     }
 
+    /// The unit of the mean of increments of angle that are written in this unit, over a second: rad/s of
+    /// rad.
+    ///
+    /// # Errors
+    /// When it is no unit of angle, in words.
+    pub fn of_increment(name: &str) -> Result<Self, String> {
+        Ok(match plain(name).as_str() {
+            "rad" | "rads" | "radian" | "radians" => Self::RadPerS,
+            "mrad" | "mrads" => Self::MilliRadPerS,
+            "deg" | "degs" | "degree" | "degrees" | "°" => Self::DegPerS,
+            "mdeg" | "m°" => Self::MilliDegPerS,
+            "arcsec" | "arcsecond" | "arcseconds" => Self::DegPerH,
+            _ => {
+                return Err(format!(
+                    "'{name}' is no unit of increments of angle: use rad, mrad, deg, mdeg or arcsec"
+                ));
+            }
+        })
+    }
+
     /// The unit's symbol.
     pub fn symbol(self) -> &'static str {
         match self {
@@ -111,6 +131,24 @@ impl ForceUnit {
             Self::G => 9.80665,
             Self::MilliG => 9.80665e-3,
         }
+    }
+
+    /// The unit of the mean of increments of velocity that are written in this unit, over a second: m/s² of
+    /// m/s.
+    ///
+    /// # Errors
+    /// When it is no unit of velocity, in words.
+    pub fn of_increment(name: &str) -> Result<Self, String> {
+        Ok(match plain(name).as_str() {
+            "m/s" | "ms-1" | "m/sec" | "mps" => Self::MPerS2,
+            "gs" | "gsec" => Self::G,
+            "mgs" | "mgsec" => Self::MilliG,
+            _ => {
+                return Err(format!(
+                    "'{name}' is no unit of increments of velocity: use m/s, g s or mg s"
+                ));
+            }
+        })
     }
 
     /// The unit's symbol.

@@ -173,9 +173,6 @@ fn formats_tell_what_their_samples_are() {
     assert!(header.contains(",delta_angle_x [rad],"), "{header}");
     assert!(header.ends_with(",temperature [degC]"), "{header}");
     assert!(text.lines().nth(2).expect("a line").ends_with(",0.04905,30.01"));
-    let said = run(&["calibrate", &csv]);
-    assert_eq!(said.code, 1, "increments are not taken for rates: {}", said.out);
-
     let said = run(&["simulate", &scene, "-o", &bag]);
     assert!(said.err.contains("increments of angle in rad and of velocity in m/s"), "{}", said.err);
     assert!(said.err.contains("the temperature is not in it"), "{}", said.err);
@@ -183,6 +180,18 @@ fn formats_tell_what_their_samples_are() {
     assert!(!said.err.contains("increments"), "{}", said.err);
     let yaml = fs::read_to_string(format!("{euroc}/imu0/sensor.yaml")).expect("written");
     assert!(yaml.contains("comment: increments of angle in rad"), "{yaml}");
+    // EuRoC's folders and tables alike are read as means, and written as such; a bag cannot say it.
+    for from in [&csv, &euroc] {
+        let to = at(&folder, "means.csv");
+        let said = run(&["convert", from, &to, "--force"]);
+        assert_eq!(said.code, 0, "{}", said.err);
+        assert!(said.err.contains("holds increments of angle and velocity"), "{}", said.err);
+        let text = fs::read_to_string(&to).expect("written");
+        assert!(text.lines().next().is_some_and(|header| header.contains(",accel_mean_z [m/s^2]")));
+        assert!(text.lines().nth(2).is_some_and(|row| row.ends_with(",9.81")), "{text:.300}");
+    }
+    let said = run(&["convert", &csv, &bag, "--force"]);
+    assert!(said.err.contains("no place for the kind of its samples"), "{}", said.err);
 
     let said = run(&["simulate", &scene, "--samples", "mean", "-o", &csv]);
     assert_eq!(said.code, 0, "{}", said.err);
@@ -191,6 +200,31 @@ fn formats_tell_what_their_samples_are() {
     assert!(source.next_block(&mut block).expect("readable"));
     assert_eq!(block.accelerometer[7].value, [0.0, 0.0, 9.81]);
     assert_eq!((block.temperature.len(), block.temperature[1].celsius), (400, 30.01));
+}
+
+/// Increments divided by their time are means to a rounding of each, 2e-16 of 9.81 m/s² and of a rate below
+/// 1 rad/s: beside noise of 1e-3, N moves by less than 1e-12 of itself.
+#[test]
+fn increments_calibrate_as_means_do() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let csv = at(&folder, "a.csv");
+    let densities = ["mean", "increments"].map(|samples| {
+        let scene = ["simulate", "low", "--duration", "10min", "--samples", samples, "-o", &csv];
+        assert_eq!(run(&scene).code, 0);
+        let said = run(&["calibrate", &csv, "--json"]);
+        assert_eq!(said.code, 0, "{}", said.err);
+        let json: serde_json::Value = serde_json::from_str(&said.out).expect("JSON");
+        ["gyroscope", "accelerometer"].map(|sensor| {
+            let axes = json[sensor]["axes"].as_array().expect("axes");
+            let density = |axis: &serde_json::Value| axis["noise_density"]["value"].as_f64();
+            axes.iter().map(|axis| density(axis).expect("a density")).collect::<Vec<_>>()
+        })
+    });
+    let [means, increments] = densities.map(|densities| densities.concat());
+    assert_eq!(means.len(), 6);
+    for (mean, increment) in means.iter().zip(&increments) {
+        assert!((increment / mean - 1.0).abs() < 1e-9, "{mean} {increment}");
+    }
 }
 
 #[test]

@@ -111,9 +111,11 @@ fn a_sampled_curve_is_a_truth_and_its_imu_integrates_to_it() {
     let flight = Flight::new(10);
     flight.fine("spline fit @poses.tum -o @a.spline --spacing 0.1");
     flight.fine("spline sample @a.spline --rate 200 -o @a.truth.csv");
-    for (kind, integrated, rule) in
-        [("instantaneous", "instantaneous", "three-sample"), ("mean", "mean", "two-increments")]
-    {
+    for (kind, integrated, rule) in [
+        ("instantaneous", "instantaneous", "three-sample"),
+        ("mean", "mean", "two-increments"),
+        ("increments", "mean", "two-increments"),
+    ] {
         flight.fine(&format!("spline imu @a.spline --rate 200 --samples {kind} -o @a.csv"));
         let said =
             flight.fine(&format!("integrate @a.csv --samples {integrated} --rule {rule} --json"));

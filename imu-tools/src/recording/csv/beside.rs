@@ -1,6 +1,7 @@
 //! What a table holds beside the columns that are taken: a second IMU, or anything else.
 
 use super::columns::Column;
+use super::increments;
 use super::names::Name;
 use crate::recording::SampleKind;
 use crate::recording::sensor::Sensor;
@@ -11,11 +12,13 @@ const SHOWN: usize = 24;
 /// The columns of a sensor that has all of its axes more than once, by their names; `None` where each
 /// sensor is there once.
 pub fn several_imus(names: &[&[u8]], hint: Option<Sensor>) -> Option<String> {
-    let reading = |text: &&[u8]| match Name::new(text).meaning(hint) {
-        _ if is_about_readings(text) => Column::Other,
-        column => column,
-    };
-    let columns: Vec<Column> = names.iter().map(reading).collect();
+    let parts: Vec<Name> = names.iter().map(|text| Name::new(text)).collect();
+    let mut columns = increments::meanings(&parts, hint);
+    for (column, text) in columns.iter_mut().zip(names) {
+        if is_about_readings(text) {
+            *column = Column::Other;
+        }
+    }
     let twice = |sensor: fn(u8) -> Column| {
         [0, 1, 2].iter().all(|&axis| columns.iter().filter(|&&c| c == sensor(axis)).count() > 1)
     };
@@ -34,13 +37,12 @@ pub fn several_imus(names: &[&[u8]], hint: Option<Sensor>) -> Option<String> {
     (rates || forces).then(|| listed(&found, SHOWN))
 }
 
-/// What the names of the columns that are taken say of the samples; of two things, the one that can be taken
-/// for readings the least.
+/// What the names of the columns that are taken say of the samples; increments become means.
 pub fn samples(names: &[&[u8]], columns: &[Column]) -> Option<SampleKind> {
     let reading = |column: &Column| matches!(column, Column::Rate(_) | Column::Force(_));
     let taken = names.iter().zip(columns).filter(|(_, column)| reading(column));
-    let told: Vec<SampleKind> = taken.filter_map(|(text, _)| Name::new(text).samples()).collect();
-    [SampleKind::Increments, SampleKind::Mean].into_iter().find(|kind| told.contains(kind))
+    let mut names = taken.map(|(text, _)| Name::new(text));
+    names.any(|name| name.is_mean() || name.is_increment()).then_some(SampleKind::Mean)
 }
 
 /// The columns that are not taken, by their names where they have any; empty where there are none.

@@ -66,12 +66,18 @@ impl<'a> Granted<'a> {
         if !self.columns.has(Column::Rate(0)) {
             notes.push(Note::Warning(format!("{name} has no columns of a gyroscope")));
         } else if rate.is_none() {
-            self.granted.push("angular rate as rad/s (--gyro-unit)".into());
+            self.granted.push(match self.columns.angles {
+                true => "increments of angle as rad (--gyro-unit, deg/s of deg)".into(),
+                false => "angular rate as rad/s (--gyro-unit)".into(),
+            });
         }
         if !self.columns.has(Column::Force(0)) {
             notes.push(Note::Warning(format!("{name} has no columns of an accelerometer")));
         } else if force.is_none() {
-            self.granted.push("specific force as m/s^2 (--accel-unit)".into());
+            self.granted.push(match self.columns.velocities {
+                true => "increments of velocity as m/s (--accel-unit, g of g s)".into(),
+                false => "specific force as m/s^2 (--accel-unit)".into(),
+            });
         }
         if !self.granted.is_empty() {
             notes.push(Note::Info(format!("{name} is read with {}", self.granted.join(", "))));

@@ -6,7 +6,7 @@ use super::celsius::Celsius;
 use super::columns::{Column, Columns};
 use super::dialect::{Dialect, Separator, pointed};
 use super::granted::Granted;
-use super::names::Name;
+use super::increments::Increments;
 use super::{beside, date, number};
 use crate::error::Error;
 use crate::recording::sensor::Sensor;
@@ -34,6 +34,8 @@ pub struct Layout {
     pub bytes_before: usize,
     /// What the header says of the samples; nothing where the user says what the columns are.
     pub samples: Option<SampleKind>,
+    /// What makes means of increments.
+    pub increments: Increments,
     /// Names of columns that are not taken; empty where there are none.
     pub not_taken: String,
     /// What was taken for granted.
@@ -205,6 +207,7 @@ impl Layout {
                 Some(_) => None,
                 None => beside::samples(&names, &found.columns),
             },
+            increments: Increments::of(&found, name.to_string()),
             not_taken: beside::not_taken(&names, &found.columns, &fields),
             notes: several.into_iter().collect(),
         };
@@ -219,6 +222,7 @@ impl Layout {
         let (factors, notes) = granted.sensors()?;
         (layout.rate, layout.force) = (factors.rate, factors.force);
         layout.notes.extend(notes);
+        layout.notes.extend(layout.increments.remark());
         if layout.time != Time::Text {
             // A day beside a number is no part of it.
             for column in found.columns.iter_mut().filter(|c| **c == Column::Date) {
@@ -259,16 +263,6 @@ fn columns(
     }
     if let Some(found) = from_headers(start, dialect, sensor_by_name(path)) {
         return found.map_err(|what| {
-            let names = start.names(dialect, width);
-            let of = |name: &&&[u8]| Name::new(name).samples() == Some(SampleKind::Increments);
-            if let Some(increment) = names.iter().find(of) {
-                return Error::data(format!(
-                    "{} holds increments by its header ({}), where angular rates and specific forces are \
-                     wanted: divide them by the time between samples",
-                    path.display(),
-                    beside::name(increment)
-                ));
-            }
             Error::data(format!(
                 "in the header of {} {what}: name its columns with --map t=NAME,gx=NAME,… or \
                  --columns t,gx,gy,gz,ax,ay,az",

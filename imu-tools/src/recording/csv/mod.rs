@@ -11,9 +11,12 @@
 mod beside;
 pub(super) mod celsius;
 pub(super) mod columns;
+#[cfg(test)]
+mod columns_tests;
 mod date;
 pub(super) mod dialect;
 pub(super) mod granted;
+pub(super) mod increments;
 mod layout;
 mod names;
 pub(super) mod number;

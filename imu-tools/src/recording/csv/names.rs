@@ -1,8 +1,9 @@
 //! What the name of a column says: which quantity it holds, which axis, in which unit.
 
 use super::columns::Column;
+use super::increments;
 use crate::recording::sensor::Sensor;
-use crate::recording::{ForceUnit, RateUnit, SampleKind, TimeUnit};
+use crate::recording::{ForceUnit, RateUnit, TimeUnit};
 
 /// A column's name in parts.
 pub struct Name {
@@ -47,7 +48,7 @@ const ACCELEROMETER: [&str; 9] = [
     "specificforce",
 ];
 
-/// Words of columns that hold means over an interval, and increments over it.
+/// Words of columns that hold means over an interval, and increments over it whatever else they say.
 const MEANS: [&str; 4] = ["mean", "avg", "average", "averaged"];
 const INCREMENTS: [&str; 3] = ["delta", "increment", "increments"];
 
@@ -127,14 +128,21 @@ impl Name {
         };
         for at in before.len().saturating_sub(UNIT).max(1)..before.len() {
             let (sensor, unit) = before.split_at(at);
-            let unit = match quotient(unit) {
+            let (increments, unit) = (increments::sensor(sensor), quotient(unit));
+            let unit = match increments {
                 // What PX4 calls an angular rate.
-                rad if rad == "rad" => "rad/s".into(),
-                unit => unit,
+                None if unit == "rad" => "rad/s".into(),
+                _ => unit,
             };
-            if named(sensor, &GYROSCOPE) && unit.parse::<RateUnit>().is_ok()
-                || named(sensor, &ACCELEROMETER) && unit.parse::<ForceUnit>().is_ok()
-            {
+            let known = match increments {
+                Some(Sensor::Gyroscope) => RateUnit::of_increment(&unit).is_ok(),
+                Some(Sensor::Accelerometer) => ForceUnit::of_increment(&unit).is_ok(),
+                None => {
+                    named(sensor, &GYROSCOPE) && unit.parse::<RateUnit>().is_ok()
+                        || named(sensor, &ACCELEROMETER) && unit.parse::<ForceUnit>().is_ok()
+                }
+            };
+            if known {
                 let end = before.len();
                 self.words.drain(at..end);
                 self.unit = Some(unit);
@@ -172,17 +180,8 @@ impl Name {
         if is_time(last) {
             return Column::Time;
         }
-        let (stems, axis) = match (self.index, axis(last)) {
-            (Some(axis), _) => (self.words.clone(), axis),
-            (None, Some((stem, axis))) => {
-                let mut stems = self.words.clone();
-                stems.pop();
-                stems.push(stem.to_owned());
-                (stems, axis)
-            }
-            (None, None) => return Column::Other,
-        };
-        if stems.iter().all(String::is_empty) {
+        let Some((stems, axis)) = self.stems() else { return Column::Other };
+        if stems.is_empty() {
             let unit = self.unit.as_deref().unwrap_or_default();
             return match hint {
                 _ if unit.parse::<RateUnit>().is_ok() => Column::Rate(axis),
@@ -192,6 +191,11 @@ impl Name {
                 None => Column::Other,
             };
         }
+        match increments::sensor(&stems) {
+            Some(Sensor::Gyroscope) => return Column::Rate(axis),
+            Some(Sensor::Accelerometer) => return Column::Force(axis),
+            None => {}
+        }
         match (named(&stems, &GYROSCOPE), named(&stems, &ACCELEROMETER)) {
             (true, false) => Column::Rate(axis),
             (false, true) => Column::Force(axis),
@@ -199,13 +203,29 @@ impl Name {
         }
     }
 
-    /// What its samples are, where it says so.
-    pub fn samples(&self) -> Option<SampleKind> {
-        let word = |list: &[&str]| self.words.iter().any(|w| list.contains(&w.as_str()));
-        if word(&INCREMENTS) {
-            return Some(SampleKind::Increments);
+    /// Its words without the axis, and the axis, if it has one.
+    fn stems(&self) -> Option<(Vec<String>, u8)> {
+        let mut stems = self.words.clone();
+        if let Some(axis) = self.index {
+            return Some((stems, axis));
         }
-        word(&MEANS).then_some(SampleKind::Mean)
+        let last = stems.pop()?;
+        let (stem, axis) = axis(&last)?;
+        stems.push(stem.to_owned());
+        // An axis by itself leaves an empty stem.
+        stems.retain(|stem| !stem.is_empty());
+        Some((stems, axis))
+    }
+
+    /// It says of a reading that it is a mean over an interval.
+    pub fn is_mean(&self) -> bool {
+        self.words.iter().any(|word| MEANS.contains(&word.as_str()))
+    }
+
+    /// It says of a reading that it is an increment over an interval.
+    pub fn is_increment(&self) -> bool {
+        self.words.iter().any(|word| INCREMENTS.contains(&word.as_str()))
+            || self.stems().is_some_and(|(stems, _)| increments::sensor(&stems).is_some())
     }
 
     /// The half of a time in two columns that this is by its name, if there is another half.
@@ -296,7 +316,10 @@ fn is_temperature(word: &str) -> bool {
 fn axis(word: &str) -> Option<(&str, u8)> {
     let stem = word.strip_suffix(['x', 'y', 'z'])?;
     let axis = word.bytes().last()?.checked_sub(b'x')?;
-    let known = stem.is_empty() || GYROSCOPE.contains(&stem) || ACCELEROMETER.contains(&stem);
+    let known = stem.is_empty()
+        || GYROSCOPE.contains(&stem)
+        || ACCELEROMETER.contains(&stem)
+        || increments::sensor_in_one_piece(stem).is_some();
     known.then_some((stem, axis))
 }
 

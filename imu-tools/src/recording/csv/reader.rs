@@ -125,6 +125,10 @@ impl Source for CsvReader {
             }
             self.input.consume(len);
         }
+        self.layout.increments.divide(block)?;
+        if block.is_empty() {
+            self.layout.notes.extend(self.layout.increments.verdict());
+        }
         Ok(!block.is_empty())
     }
 

@@ -1,7 +1,5 @@
 //! What a table says of the unit of its columns.
 
-use std::str::FromStr;
-
 /// What the names of columns, or a row of units, say of a unit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Told<U> {
@@ -14,7 +12,7 @@ pub enum Told<U> {
     Unclear(String),
 }
 
-impl<U: FromStr<Err = String> + Copy + PartialEq> Told<U> {
+impl<U: Copy + PartialEq> Told<U> {
     /// The unit given by the user, or else the one told.
     ///
     /// # Errors
@@ -28,15 +26,20 @@ impl<U: FromStr<Err = String> + Copy + PartialEq> Told<U> {
         }
     }
 
-    /// Takes in what one column says; the first trouble stays.
-    pub fn hear(&mut self, column: &[u8], unit: Option<&str>) {
+    /// Takes in what one column says, in words that `parse` knows; the first trouble stays.
+    pub fn hear(
+        &mut self,
+        column: &[u8],
+        unit: Option<&str>,
+        parse: impl Fn(&str) -> Result<U, String>,
+    ) {
         let unit = unit.unwrap_or_default().trim_matches(|c| "[]() ".contains(c));
         if unit.is_empty() || matches!(self, Self::Unclear(_)) {
             return;
         }
         let unclear =
             |what| Self::Unclear(format!("column '{}': {what}", String::from_utf8_lossy(column)));
-        *self = match unit.parse() {
+        *self = match parse(unit) {
             Err(what) => unclear(what),
             Ok(unit) if matches!(self, Self::Unit(other) if *other != unit) => {
                 unclear("its unit is not that of the sensor's other axes".into())

@@ -12,7 +12,7 @@ mod refusal;
 use std::path::PathBuf;
 
 use super::sensor::Sensor;
-use super::{Block, Note, ReadOptions, Source, Stream, add_streams};
+use super::{Block, Note, ReadOptions, SampleKind, Source, Stream, add_streams};
 use crate::error::Error;
 use part::Part;
 
@@ -41,6 +41,8 @@ pub struct Joined {
     done: u64,
     total: Option<u64>,
     sensors: [String; 2],
+    /// What all files say that their samples are.
+    samples: Option<SampleKind>,
 }
 
 impl Joined {
@@ -68,6 +70,8 @@ impl Joined {
         refusal::copies(&parts)?;
         let names = parts.iter().map(Part::name).collect();
         let total = parts.iter().map(|part| part.bytes).sum();
+        let kind = parts.first().and_then(|part| part.samples);
+        let samples = kind.filter(|_| parts.iter().all(|part| part.samples == kind));
         parts.reverse();
         let Some(part) = parts.pop() else {
             return Err(Error::data("none of these files holds a sample of an IMU"));
@@ -89,6 +93,7 @@ impl Joined {
             done: 0,
             total,
             sensors,
+            samples,
         })
     }
 
@@ -223,6 +228,10 @@ impl Source for Joined {
     fn take_notes(&mut self) -> Vec<Note> {
         self.gather_notes();
         std::mem::take(&mut self.notes)
+    }
+
+    fn samples(&self) -> Option<SampleKind> {
+        self.samples
     }
 
     fn bytes_read(&self) -> u64 {

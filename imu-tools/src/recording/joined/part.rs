@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::recording::{Block, ReadOptions, Sample, Source, open, timeline};
+use crate::recording::{Block, ReadOptions, Sample, SampleKind, Source, open, timeline};
 
 /// One of the files, of which the first block was read.
 pub struct Part {
@@ -14,6 +14,8 @@ pub struct Part {
     pub rates: [Option<f64>; 2],
     /// Length of the mean specific force, m/s².
     pub force: Option<f64>,
+    /// What the file says that its samples are, where it does.
+    pub samples: Option<SampleKind>,
     /// Length of the file, where that is known.
     pub bytes: Option<u64>,
     /// What cannot be opened again (a pipe) stays open, with its first block.
@@ -37,10 +39,10 @@ impl Part {
         let (first, rates) =
             (lists.map(|list| list.first().copied()), lists.map(|list| timeline::rate(list)));
         let force = mean_length(&block.accelerometer);
-        let bytes = source.bytes_total();
+        let (samples, bytes) = (source.samples(), source.bytes_total());
         let again = path != Path::new("-") && (path.is_file() || path.is_dir());
         let held = if again { None } else { Some((source, block)) };
-        Ok(Some(Self { path: path.to_owned(), first, rates, force, bytes, held }))
+        Ok(Some(Self { path: path.to_owned(), first, rates, force, samples, bytes, held }))
     }
 
     /// The first stamp of either sensor.

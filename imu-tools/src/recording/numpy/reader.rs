@@ -11,9 +11,10 @@ use crate::error::Error;
 use crate::recording::csv::celsius::Celsius;
 use crate::recording::csv::columns::{Column, Columns};
 use crate::recording::csv::granted::Granted;
+use crate::recording::csv::increments::Increments;
 use crate::recording::input::{Input, LARGEST_PIECE};
 use crate::recording::{
-    BLOCK_SAMPLES, Block, Note, ReadOptions, Sample, Source, Stream, Temperature,
+    BLOCK_SAMPLES, Block, Note, ReadOptions, Sample, SampleKind, Source, Stream, Temperature,
 };
 
 /// So many rows show the unit of time.
@@ -29,6 +30,8 @@ pub struct NumpyReader {
     rate: f64,
     force: f64,
     celsius: Celsius,
+    increments: Increments,
+    samples: Option<SampleKind>,
     /// Rows in all, and those that were read.
     rows: u64,
     row: u64,
@@ -87,6 +90,8 @@ impl NumpyReader {
         }
         let found = columns(&candidates, &arrays, options, &name)?;
         let mut reader = Self {
+            increments: Increments::of(&found, name.clone()),
+            samples: (found.angles || found.velocities).then_some(SampleKind::Mean),
             name,
             streams: Vec::new(),
             places: Vec::new(),
@@ -211,6 +216,7 @@ impl NumpyReader {
         }
         let (factors, notes) = granted.sensors()?;
         (self.rate, self.force, self.notes) = (factors.rate, factors.force, notes);
+        self.notes.extend(self.increments.remark());
         Ok(())
     }
 
@@ -354,7 +360,12 @@ impl Source for NumpyReader {
                 break;
             }
         }
-        Ok(!block.gyroscope.is_empty() || !block.accelerometer.is_empty())
+        self.increments.divide(block)?;
+        let any = !block.gyroscope.is_empty() || !block.accelerometer.is_empty();
+        if !any {
+            self.notes.extend(self.increments.verdict());
+        }
+        Ok(any)
     }
 
     fn streams(&self) -> Vec<Stream> {
@@ -372,6 +383,10 @@ impl Source for NumpyReader {
 
     fn take_notes(&mut self) -> Vec<Note> {
         std::mem::take(&mut self.notes)
+    }
+
+    fn samples(&self) -> Option<SampleKind> {
+        self.samples
     }
 
     fn bytes_read(&self) -> u64 {
