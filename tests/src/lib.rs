@@ -1,6 +1,7 @@
 //! Published data and helpers that the cross-crate tests share.
 
 pub mod allan_bands;
+pub mod arrivals;
 pub mod bags;
 pub mod closure;
 pub mod command;

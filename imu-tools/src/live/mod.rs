@@ -12,6 +12,7 @@ pub mod link;
 mod message;
 pub mod port;
 pub mod protocol;
+pub mod rates;
 pub mod run;
 pub mod screen;
 pub mod session;

@@ -1,0 +1,126 @@
+//! What the first two seconds of a stretch say: what counts, by how much, how fast, and since when.
+
+use super::reading::{Reading, Source};
+use super::track::{Start, Track};
+use crate::live::Message;
+
+/// Two seconds of bursts show a rate to this part, stalls included. What is known from elsewhere
+/// (ticks in a second, the stretch before, a nominal rate) is better if it is not further off.
+const KNOWN: f64 = 4e-3;
+
+/// A counter that got so far ahead of the host, ns, was set, or began anew.
+const AHEAD_NS: f64 = 1e9;
+
+/// Whether a message continues those that are held back: its counter goes on, and not faster than
+/// time.
+pub(super) fn goes_on(held: &[(i64, Message)], arrival_ns: i64, message: &Message) -> bool {
+    let (Some((first_ns, _)), Some((_, before))) = (held.first(), held.last()) else { return true };
+    let (Some(ticks), Some(now), Some(before)) =
+        (message.ticks, Reading::of(Source::Ticks, message), Reading::of(Source::Ticks, before))
+    else {
+        return true;
+    };
+    let elapsed = arrival_ns.saturating_sub(*first_ns) as f64;
+    let sensor_ns = |units: u64| units as f64 * 1e9 / ticks.per_second.max(1) as f64;
+    now.since(before).is_some_and(|units| sensor_ns(units) <= elapsed + AHEAD_NS)
+}
+
+/// The track on which the messages lie; `None` where there are none.
+pub(super) fn from(
+    held: &[(i64, Message)],
+    before: Option<&Track>,
+    nominal_rate: Option<f64>,
+) -> Option<Track> {
+    let (origin_ns, first) = held.first()?;
+    let source = source(held);
+    let steps = steps(held, source);
+    let stride = median(steps.iter().skip(1).copied()).unwrap_or(1).max(1);
+    let points: Vec<(f64, f64)> = held
+        .iter()
+        .zip(steps.iter().scan(0.0, |units, step| {
+            *units += *step as f64;
+            Some(*units)
+        }))
+        .map(|((arrival_ns, _), units)| (units, arrival_ns.saturating_sub(*origin_ns) as f64))
+        .collect();
+    let tick_ns = first.ticks.map(|t| 1e9 / t.per_second.max(1) as f64);
+    let tick_ns = tick_ns.filter(|_| source == Source::Ticks);
+    let known = before.filter(|b| b.source() == source).map(Track::unit_ns);
+    let nominal = nominal_rate.map(|rate| 1e9 / (rate * stride as f64));
+    let known = known.or(tick_ns).or(nominal);
+    let measured = slope(&points);
+    let unit_ns = match (known, measured) {
+        (Some(known), Some(measured)) if (measured / known - 1.0).abs() > KNOWN => measured,
+        (Some(known), _) => known,
+        (None, Some(measured)) => measured,
+        (None, None) => 1e9 / stride as f64,
+    };
+    let earliest =
+        points.iter().map(|(units, at)| at - units * unit_ns).fold(f64::INFINITY, f64::min);
+    let reading = Reading::of(source, first);
+    Some(Track::new(Start {
+        source,
+        origin_ns: *origin_ns,
+        stride,
+        unit_ns,
+        tick_ns,
+        reading,
+        offset_ns: earliest,
+    }))
+}
+
+/// Ticks where all messages have them and most of them differ; else counts; else nothing.
+fn source(held: &[(i64, Message)]) -> Source {
+    let shows = |source: Source| {
+        let readings = || held.iter().filter_map(move |(_, m)| Reading::of(source, m));
+        let moved = readings().zip(readings().skip(1)).filter(|(a, b)| a.value != b.value).count();
+        readings().count() == held.len() && 2 * (moved + 1) >= held.len()
+    };
+    let found = [Source::Ticks, Source::Count].into_iter().find(|source| shows(*source));
+    found.unwrap_or(Source::Arrival)
+}
+
+/// Units from each message to the next, 0 of the first.
+fn steps(held: &[(i64, Message)], source: Source) -> Vec<u64> {
+    let mut before = None;
+    let step = |(_, message): &(i64, Message)| {
+        let now = Reading::of(source, message);
+        let last = before.replace(now);
+        match (last, now) {
+            (None, _) => 0,
+            (Some(Some(last)), Some(now)) => now.since(last).unwrap_or(0),
+            (Some(_), _) => 1,
+        }
+    };
+    held.iter().map(step).collect()
+}
+
+/// Host time of a unit, ns: the median slope between the ends of bursts in the first and the last third
+/// (Theil 1950), of the latest message of each burst, which waited least.
+fn slope(points: &[(f64, f64)]) -> Option<f64> {
+    let last_of_burst = |pair: &[(f64, f64)]| match pair {
+        [a, b] if a.1 < b.1 => Some(*a),
+        _ => None,
+    };
+    let mut ends: Vec<(f64, f64)> = points.windows(2).filter_map(last_of_burst).collect();
+    ends.extend(points.last());
+    let third = ends.len().div_ceil(3);
+    let (early, late) = (ends.get(..third)?, ends.get(ends.len() - third..)?);
+    // A few dozen of each are enough, and few enough to be compared all with all.
+    let some = |part: &[(f64, f64)]| {
+        part.iter().step_by(part.len().div_ceil(40).max(1)).copied().collect::<Vec<_>>()
+    };
+    let (early, late) = (some(early), some(late));
+    let slopes = early
+        .iter()
+        .flat_map(|a| late.iter().filter(|b| b.0 > a.0).map(move |b| (b.1 - a.1) / (b.0 - a.0)));
+    let mut slopes: Vec<f64> = slopes.filter(|slope| *slope > 0.0).collect();
+    slopes.sort_unstable_by(f64::total_cmp);
+    slopes.get(slopes.len() / 2).copied()
+}
+
+fn median(values: impl Iterator<Item = u64>) -> Option<u64> {
+    let mut values: Vec<u64> = values.collect();
+    values.sort_unstable();
+    values.get(values.len() / 2).copied()
+}

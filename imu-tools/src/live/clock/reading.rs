@@ -1,0 +1,64 @@
+//! What places a message in time: the sensor's ticks, its count, or that it is the next one.
+
+use serde::{Deserialize, Serialize};
+
+use crate::live::Message;
+
+/// What sample times come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Source {
+    /// The sensor's clock.
+    Ticks,
+    /// The numbers of its messages.
+    Count,
+    /// That messages came, and when.
+    #[default]
+    Arrival,
+}
+
+/// A counter's reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Reading {
+    pub value: u64,
+    pub wraps_at: Option<u64>,
+}
+
+impl Reading {
+    /// What `source` reads in a message.
+    pub fn of(source: Source, message: &Message) -> Option<Self> {
+        match source {
+            Source::Ticks => message
+                .ticks
+                .map(|t| Self { value: t.value, wraps_at: t.wraps_at.filter(|w| *w > 0) }),
+            Source::Count => message.count.map(|c| Self {
+                value: u64::from(c.value),
+                wraps_at: Some(c.wraps_at).filter(|w| *w > 0),
+            }),
+            Source::Arrival => None,
+        }
+    }
+
+    /// Units from `before` to this, fewer than the counter counts to before it wraps; `None` where it
+    /// went back and never wraps.
+    pub fn since(self, before: Self) -> Option<u64> {
+        match self.wraps_at {
+            // A value at or above the wrap is a sensor's mistake: taken as if it had wrapped.
+            Some(wrap) => Some((self.value % wrap + (wrap - before.value % wrap)) % wrap),
+            None => self.value.checked_sub(before.value),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counters_wrap_or_go_back() {
+        let at = |value, wraps_at| Reading { value, wraps_at };
+        assert_eq!(at(3, Some(256)).since(at(250, Some(256))), Some(9));
+        assert_eq!(at(250, Some(256)).since(at(250, Some(256))), Some(0));
+        assert_eq!(at(3, None).since(at(250, None)), None);
+        assert_eq!(at(u64::MAX, None).since(at(0, None)), Some(u64::MAX));
+    }
+}

@@ -1,0 +1,194 @@
+//! Edges of the clock: counters that wrap, stop or begin anew, silence, pauses, few messages. How
+//! well it does over minutes is measured in `tests/src/arrivals.rs`.
+
+use super::*;
+use crate::live::{Count, Ticks};
+
+const MS: i64 = 1_000_000;
+
+fn with_ticks(value: u64, wraps_at: Option<u64>) -> Message {
+    let ticks = Some(Ticks { value, per_second: 1_000_000, wraps_at });
+    Message { ticks, ..Message::default() }
+}
+
+fn with_count(value: u64, wraps_at: u64) -> Message {
+    let count = Some(Count { value: (value % wraps_at) as u32, wraps_at });
+    Message { count, ..Message::default() }
+}
+
+/// What a new clock makes of arrivals and messages.
+fn taken(messages: impl IntoIterator<Item = (i64, Message)>) -> (Clock, Vec<Taken>) {
+    let (mut clock, mut all) = (Clock::new(None), Vec::new());
+    for (arrival_ns, message) in messages {
+        clock.take(arrival_ns, &message, |_, taken| all.push(taken));
+    }
+    clock.finish(|_, taken| all.push(taken));
+    assert!(all.windows(2).all(|w| w[0].stamp_ns < w[1].stamp_ns), "stamps go on");
+    (clock, all)
+}
+
+/// Read when a timer of 16 ms fires.
+fn read(sent_ns: i64) -> i64 {
+    (sent_ns / (16 * MS) + 1) * 16 * MS
+}
+
+fn lost(taken: &[Taken]) -> Vec<(usize, u64)> {
+    taken.iter().enumerate().filter(|(_, t)| t.lost > 0).map(|(i, t)| (i, t.lost)).collect()
+}
+
+#[test]
+fn no_message_and_one_message() {
+    assert!(taken([]).1.is_empty());
+    let (clock, one) = taken([(77, Message::default())]);
+    assert_eq!(one.iter().map(|t| t.stamp_ns).collect::<Vec<_>>(), [77]);
+    assert_eq!((clock.status().lost, clock.status().restarts), (0, 0));
+}
+
+#[test]
+fn ticks_wrap_where_they_say_and_losses_are_seen() {
+    // 100 Hz by a clock of 24 bits, which wraps every 16.8 s; 7 messages are lost.
+    let sent = (0..5000_i64).filter(|k| !(3000..3007).contains(k));
+    let wrap = 1 << 24;
+    let (clock, all) =
+        taken(sent.map(|k| (read(k * 10 * MS), with_ticks(k as u64 * 10_000 % wrap, Some(wrap)))));
+    assert_eq!(lost(&all), [(3000, 7)]);
+    let status = clock.status();
+    assert_eq!((status.source, status.restarts, status.lost), (Source::Ticks, 0, 7));
+    assert!(status.lost_is_certain && all[3000].certain);
+    // An increment behind a gap is of one period.
+    assert!((all[3000].interval_s - 0.01).abs() < 1e-5, "{:?}", all[3000]);
+    assert!((all[3000].stamp_ns - all[2999].stamp_ns - 80 * MS).abs() < MS / 10);
+}
+
+#[test]
+fn a_reboot_is_a_restart_whatever_the_counter() {
+    for wraps_at in [None, Some(1 << 32)] {
+        let before = (0..1000_i64).map(|k| (read(k * 10 * MS), k + 100_000));
+        let after = (0..1000_i64).map(|k| (read(k * 10 * MS + 12_000 * MS), k));
+        let all = before.chain(after);
+        let (clock, all) = taken(all.map(|(at, k)| (at, with_ticks(k as u64 * 10_000, wraps_at))));
+        assert_eq!(clock.status().restarts, 1);
+        assert!(all[1000].restart && !all[1000].certain);
+        // 12 s after the first message, within the 16 ms that a message may wait.
+        let gap = all[1000].stamp_ns - all[0].stamp_ns;
+        assert!((gap - 12_000 * MS).abs() <= 16 * MS, "{gap}");
+        assert_eq!(all.len(), 2000);
+    }
+}
+
+#[test]
+fn a_reboot_in_the_first_two_seconds() {
+    let value = |k: i64| if k < 50 { k + 100_000 } else { k - 50 };
+    let all =
+        (0..1000_i64).map(|k| (read(k * 10 * MS), with_ticks(value(k) as u64 * 10_000, None)));
+    let (clock, all) = taken(all);
+    assert_eq!((all.len(), clock.status().restarts), (1000, 1));
+    assert!(all[50].restart);
+}
+
+#[test]
+fn a_small_counter_in_a_second_of_silence() {
+    // 1 kHz and a count of 8 bits: 1000 lost messages are three rounds and 232.
+    let sent = (0..20_000_i64).filter(|k| !(8000..9000).contains(k));
+    let (clock, all) = taken(sent.map(|k| (read(k * MS), with_count(k as u64, 256))));
+    assert_eq!(lost(&all), [(8000, 1000)]);
+    assert!(clock.status().lost_is_certain);
+}
+
+#[test]
+fn a_pause_of_the_reader_loses_nothing() {
+    // What was sent in three seconds is read at once; every counter, and none.
+    let at = |k: i64| {
+        let at = read(k * 10 * MS);
+        if (30_000..33_000).contains(&(at / MS)) { 33_000 * MS } else { at }
+    };
+    let kinds: [fn(u64) -> Message; 3] =
+        [|k| with_ticks(k * 10_000, None), |k| with_count(k, 256), |_| Message::default()];
+    for kind in kinds {
+        let (clock, all) = taken((0..8000_i64).map(|k| (at(k), kind(k as u64))));
+        assert_eq!(lost(&all), [], "{:?}", clock.status().source);
+        assert_eq!(clock.status().restarts, 0);
+        let steps = all.windows(2).map(|w| w[1].stamp_ns - w[0].stamp_ns);
+        assert!(
+            steps.into_iter().all(|s| (s - 10 * MS).abs() < MS / 50),
+            "1000 ppm, and the rate's"
+        );
+    }
+}
+
+#[test]
+fn hours_of_silence() {
+    let hours = 7 * 3600 * 1000 * MS;
+    let at = |k: i64| if k < 4000 { k * 10 * MS } else { k * 10 * MS + hours };
+    // The sensor's clock went on, and round five times.
+    let ticks = |k: i64| with_ticks((at(k) / 1000) as u64 % (1 << 32), Some(1 << 32));
+    let (clock, all) = taken((0..8000).map(|k| (read(at(k)), ticks(k))));
+    assert_eq!(clock.status().restarts, 0);
+    assert_eq!(lost(&all), [(4000, 7 * 360_000)]);
+    // Without one nothing tells how many were missed.
+    let (clock, all) = taken((0..8000).map(|k| (read(at(k)), Message::default())));
+    assert_eq!(clock.status().restarts, 1);
+    assert!(all[4000].restart && !all[4000].certain);
+    assert!(all[4000].lost.abs_diff(7 * 360_000) <= 3, "{:?}", all[4000]);
+}
+
+#[test]
+fn a_host_that_slept_while_its_clock_stood_still() {
+    let ticks = |k: i64| if k < 4000 { k * 10_000 } else { k * 10_000 + 3_600_000_000 };
+    let all = (0..8000).map(|k| (read(k * 10 * MS), with_ticks(ticks(k) as u64, None)));
+    let (clock, _) = taken(all);
+    assert_eq!(clock.status().restarts, 1);
+}
+
+#[test]
+fn a_state_written_and_read_goes_on_with_the_same_stamps() {
+    let message = |k: i64| (read(k * 10 * MS), with_ticks(k as u64 * 10_000, None));
+    let (_, whole) = taken((0..4000).map(message));
+    let (mut clock, mut all) = (Clock::new(None), Vec::new());
+    for k in 0..2000 {
+        let (at, message) = message(k);
+        clock.take(at, &message, |_, taken| all.push(taken));
+    }
+    let bytes = postcard::to_stdvec(&clock).unwrap();
+    let mut clock: Clock = postcard::from_bytes(&bytes).unwrap();
+    for k in 2000..4000 {
+        let (at, message) = message(k);
+        clock.take(at, &message, |_, taken| all.push(taken));
+    }
+    assert_eq!(all, whole);
+    // Another program, another epoch.
+    clock.resumed();
+    clock.take(5, &message(0).1, |_, _| {});
+    clock.finish(|_, taken| assert_eq!((taken.stamp_ns, taken.lost), (5, 0)));
+}
+
+#[test]
+fn nonsense_does_no_harm() {
+    let mut state = 1_u64;
+    let mut random = || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state >> 11
+    };
+    let (mut clock, mut last, mut count) = (Clock::new(Some(f64::NAN)), i64::MIN, 0);
+    for _ in 0..20_000 {
+        let ticks = Ticks {
+            value: random() << (random() % 12),
+            per_second: 1 + random() % 3,
+            wraps_at: Some(random() % 3),
+        };
+        let wraps_at = random() % 3;
+        let message = Message {
+            ticks: (random() % 3 > 0).then_some(ticks),
+            count: Some(Count { value: random() as u32, wraps_at }),
+            ..Message::default()
+        };
+        clock.take((random() as i64).wrapping_sub(1 << 52), &message, |_, taken| {
+            assert!(taken.stamp_ns > last || taken.stamp_ns == i64::MAX);
+            last = taken.stamp_ns;
+            count += 1;
+        });
+    }
+    clock.finish(|_, _| count += 1);
+    assert_eq!(count, 20_000);
+}

@@ -1,0 +1,310 @@
+//! One stretch of messages on one line: where each belongs, and how the line follows the arrivals.
+
+use serde::{Deserialize, Serialize};
+
+use super::envelope::{self, Curve, Point};
+use super::reading::{Reading, Source};
+use crate::live::Message;
+
+/// Of so many seconds and messages the earliest arrival counts.
+const BLOCK_S: f64 = 1.0;
+const BLOCK_MESSAGES: u64 = 4;
+
+/// What was read within less time, ns, had waited for its reader, and says nothing of the line.
+const BLOCK_READ_NS: i64 = 500_000_000;
+
+/// So many of them make the curve.
+const MOST_POINTS: usize = 600;
+
+/// The line is led to the curve in a quarter of the time that was seen, within these, s.
+const SOON_S: (f64, f64) = (2.0, 20.0);
+
+/// The line is led to the curve no faster than this, ns/s: what follows stamps can follow that.
+const FASTEST: f64 = 1e6;
+
+/// No message is sent after it was read. Where one seems to be by more than this, ns (and 1e-4 of the
+/// time since the last), a counter was set.
+const AHEAD_NS: f64 = 50e6;
+
+/// A silence, ns, in which a counter may have gone round.
+const SILENCE_NS: i64 = 1_000_000_000;
+
+/// A silence, ns, after which nothing tells how many messages were missed, without a counter.
+const LOST_TRACK_NS: i64 = 10_000_000_000;
+
+/// Messages with ticks that are all so late, ns, were stamped by a clock that was set.
+const SET_NS: f64 = 1e9;
+
+/// With fewer points the curve does not show a lost message.
+const SETTLED: f64 = 60.0;
+
+/// How far the line may be too low, in periods, and how late the earliest of a second may be read, ns.
+const UNSURE: f64 = 0.05;
+const UNSURE_NS: f64 = 50e3;
+
+/// So many points under the line, each by half a period, show that it was too high.
+const LOW: u32 = 3;
+
+/// Where a message belongs, as seen from the one before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Next {
+    pub units: u64,
+    pub lost: u64,
+    pub certain: bool,
+    pub restart: bool,
+}
+
+/// How a stretch begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    pub source: Source,
+    /// Arrival of its first message, ns.
+    pub origin_ns: i64,
+    /// Units from a message to the next.
+    pub stride: u64,
+    /// Host time of a unit.
+    pub unit_ns: f64,
+    /// What the sensor says that it is.
+    pub tick_ns: Option<f64>,
+    pub reading: Option<Reading>,
+    /// When the first message was sent, as seen from its arrival.
+    pub offset_ns: f64,
+}
+
+/// The line `origin + unit·units + offset`, whose offset drifts, and what it is led by.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Track {
+    source: Source,
+    origin_ns: i64,
+    stride: u64,
+    unit_ns: f64,
+    tick_ns: Option<f64>,
+    reading: Option<Reading>,
+    /// Units passed, up to the last message.
+    units: u64,
+    last_arrival_ns: i64,
+    /// Offset at `since` (sensor time, s) in ns, and its drift, ns/s.
+    since: f64,
+    offset: f64,
+    drift: f64,
+    /// Units that were found to be missing, and are passed over with the next message.
+    passed_over: u64,
+    /// Nothing connects the next message with the last.
+    lost_track: bool,
+    /// The present block: its beginning, messages, the earliest arrival and its distance.
+    block_since: f64,
+    block_since_ns: i64,
+    block_messages: u64,
+    earliest: Point,
+    earliest_late: f64,
+    low: u32,
+    points: Vec<Point>,
+    curve: Curve,
+}
+
+impl Track {
+    pub fn new(start: Start) -> Self {
+        Self {
+            source: start.source,
+            origin_ns: start.origin_ns,
+            stride: start.stride,
+            unit_ns: start.unit_ns,
+            tick_ns: start.tick_ns,
+            reading: start.reading,
+            units: 0,
+            last_arrival_ns: start.origin_ns,
+            since: 0.0,
+            offset: start.offset_ns,
+            drift: 0.0,
+            passed_over: 0,
+            lost_track: false,
+            block_since: 0.0,
+            block_since_ns: start.origin_ns,
+            block_messages: 0,
+            earliest: Point::default(),
+            earliest_late: f64::INFINITY,
+            low: 0,
+            points: Vec::new(),
+            curve: Curve::default(),
+        }
+    }
+
+    pub fn source(&self) -> Source {
+        self.source
+    }
+
+    /// Host time of a unit, ns, as it is known by now.
+    pub fn unit_ns(&self) -> f64 {
+        self.unit_ns * (1.0 + 1e-9 * self.curve.slope)
+    }
+
+    /// Host time from a message to the next, ns.
+    pub fn period_ns(&self) -> f64 {
+        self.stride as f64 * self.unit_ns()
+    }
+
+    /// Messages a second, and the standard deviation of that.
+    pub fn rate(&self) -> (f64, f64) {
+        let rate = 1e9 / self.period_ns();
+        let Curve { above, span, points, .. } = self.curve;
+        // The slope at the end of a parabola through n points at σ, over a span: σ√192/(span·√n). The
+        // points under which a curve was laid are at their mean distance from it, or so.
+        let sd = 192_f64.sqrt() * above / (span * points.sqrt());
+        (rate, if points > 2.0 { 1e-9 * rate * sd } else { f64::INFINITY })
+    }
+
+    /// How much faster than the host's the sensor's clock runs, in millionths.
+    pub fn ppm(&self) -> Option<f64> {
+        self.tick_ns.map(|tick_ns| (tick_ns / self.unit_ns() - 1.0) * 1e6)
+    }
+
+    /// Moves the line, ns.
+    pub fn shift(&mut self, by_ns: f64) {
+        self.offset += by_ns;
+    }
+
+    /// Sensor time of a number of units, s.
+    fn seconds(&self, units: u64) -> f64 {
+        units as f64 * self.unit_ns * 1e-9
+    }
+
+    /// The line's offset, ns, at a sensor time in s.
+    fn offset_at(&self, t: f64) -> f64 {
+        self.offset + self.drift * (t - self.since)
+    }
+
+    /// Arrival minus line, ns.
+    fn late(&self, arrival_ns: i64, units: u64) -> f64 {
+        let line = units as f64 * self.unit_ns + self.offset_at(self.seconds(units));
+        arrival_ns.saturating_sub(self.origin_ns) as f64 - line
+    }
+
+    /// The stamp of the last message.
+    pub fn stamp(&self) -> i64 {
+        let line = self.units as f64 * self.unit_ns + self.offset_at(self.seconds(self.units));
+        self.origin_ns.saturating_add(line.round() as i64)
+    }
+
+    /// Host time that the sensor took for a message, ns.
+    pub fn interval_ns(&self, next: &Next) -> f64 {
+        let unit_ns = self.unit_ns * (1.0 + 1e-9 * self.drift);
+        let units = if next.restart || next.units == 0 {
+            self.stride as f64
+        } else {
+            next.units as f64 / (next.lost + 1) as f64
+        };
+        units * unit_ns
+    }
+
+    /// Where a message belongs; `None` where nothing connects it with the last.
+    pub fn next(&mut self, arrival_ns: i64, message: &Message) -> Option<Next> {
+        if self.lost_track {
+            return None;
+        }
+        let silence = arrival_ns.saturating_sub(self.last_arrival_ns);
+        let mut units = self.stride;
+        let now = Reading::of(self.source, message);
+        if let (Some(now), Some(before)) = (now, self.reading) {
+            units = now.since(before)?;
+            if let Some(wrap) = now.wraps_at
+                && silence >= SILENCE_NS
+                && units != self.stride
+            {
+                let late = self.late(arrival_ns, self.units.saturating_add(units));
+                let round = (late / (wrap as f64 * self.unit_ns) + 0.25).floor().max(0.0);
+                units = units.saturating_add((round as u64).saturating_mul(wrap));
+            }
+        } else if self.source == Source::Arrival && silence >= LOST_TRACK_NS {
+            return None;
+        }
+        units = units.saturating_add(std::mem::take(&mut self.passed_over));
+        let late = self.late(arrival_ns, self.units.saturating_add(units));
+        if self.source != Source::Arrival && late < -AHEAD_NS - 1e-4 * silence as f64 {
+            return None;
+        }
+        self.reading = now.or(self.reading);
+        let strides = units as f64 / self.stride as f64;
+        let lost = (strides.round() as u64).saturating_sub(1);
+        // Half-way between two numbers nothing is certain.
+        let certain = self.source != Source::Arrival && (strides - strides.round()).abs() < 0.25;
+        Some(Next { units, lost, certain: certain || lost == 0, restart: false })
+    }
+
+    /// Passes on to a message, and learns from its arrival.
+    pub fn pass(&mut self, arrival_ns: i64, units: u64) {
+        self.units = self.units.saturating_add(units);
+        self.last_arrival_ns = arrival_ns;
+        let t = self.seconds(self.units);
+        let late = self.late(arrival_ns, self.units);
+        if self.block_messages == 0 {
+            self.block_since = t;
+            self.block_since_ns = arrival_ns;
+            self.earliest_late = f64::INFINITY;
+        }
+        self.block_messages += 1;
+        if late < self.earliest_late {
+            self.earliest_late = late;
+            let y = arrival_ns.saturating_sub(self.origin_ns) as f64 - 1e9 * t;
+            self.earliest = Point { t, y };
+        }
+        let read_ns = arrival_ns.saturating_sub(self.block_since_ns);
+        let whole = t - self.block_since >= BLOCK_S && read_ns >= BLOCK_READ_NS;
+        if whole && self.block_messages >= BLOCK_MESSAGES {
+            let block_s = t - self.block_since;
+            self.block_messages = 0;
+            if !self.shows_a_step() {
+                self.learn(t, block_s);
+            }
+        }
+    }
+
+    /// Whether all of a block came too late for the line: messages were lost that no counter told of,
+    /// or a clock was set.
+    fn shows_a_step(&mut self) -> bool {
+        let late = self.earliest_late;
+        let wrap = self.reading.and_then(|r| r.wraps_at);
+        if self.source == Source::Arrival {
+            // The last message of a burst waited less than a period, or it would not be the last.
+            let periods = late / self.period_ns() - UNSURE;
+            if self.curve.points < SETTLED || late < self.period_ns() + UNSURE_NS || periods < 1.0 {
+                return false;
+            }
+            self.passed_over = periods as u64;
+            return true;
+        }
+        let Some(wrap) = wrap else {
+            self.lost_track = self.source == Source::Ticks && late > SET_NS;
+            return self.lost_track;
+        };
+        let round = (late / (wrap as f64 * self.unit_ns)).round();
+        if round >= 1.0 && late > 0.75 * wrap as f64 * self.unit_ns {
+            self.passed_over = (round as u64).saturating_mul(wrap);
+            return true;
+        }
+        self.lost_track = self.source == Source::Ticks && late > SET_NS;
+        self.lost_track
+    }
+
+    /// Takes the block's earliest arrival in, and leads the line to the curve under them all.
+    fn learn(&mut self, t: f64, block_s: f64) {
+        let low = self.earliest_late < -(0.5 * self.period_ns()).max(2e6);
+        self.low = if low { self.low + 1 } else { 0 };
+        if self.low >= LOW {
+            self.points.drain(..self.points.len().saturating_sub(LOW as usize - 1));
+            self.low = 0;
+        }
+        if self.points.len() >= MOST_POINTS {
+            self.points.remove(0);
+        }
+        self.points.push(self.earliest);
+        let mut hull = Vec::with_capacity(self.points.len());
+        let Some(curve) = envelope::under(&self.points, &mut hull) else { return };
+        self.curve = curve;
+        let (offset, soon) = (self.offset_at(t), (curve.span / 4.0).clamp(SOON_S.0, SOON_S.1));
+        let to = curve.level + curve.slope * (t - curve.t);
+        let soon = soon.max(2.0 * block_s);
+        self.drift = curve.slope + ((to - offset) / soon).clamp(-FASTEST, FASTEST);
+        self.offset = offset;
+        self.since = t;
+    }
+}
