@@ -3,8 +3,10 @@
 /// The state of a link.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Link {
-    /// Protocol and port, in words.
+    /// The port, in words.
     pub name: String,
+    /// The protocol, once it is known.
+    pub protocol: Option<&'static str>,
     /// Why nothing comes now, if so: the device was unplugged.
     pub gone: Option<String>,
     /// Bytes that came.

@@ -21,7 +21,7 @@ const GLANCE: Duration = Duration::from_millis(50);
 const FLUSH: Duration = Duration::from_secs(1);
 
 /// The time between views is this many times what a view takes, at least.
-const REST: u32 = 50;
+const REST: u32 = 100;
 
 /// The goal is looked at whenever the record has grown by this part, whatever the time on the wall.
 const GROWTH: f64 = 1.02;
@@ -42,6 +42,12 @@ pub trait Decode {
     /// # Errors
     /// When they are of no known protocol.
     fn feed(&mut self, arrival_ns: i64, bytes: &[u8], to: &mut Vec<Step>) -> Result<(), Error>;
+
+    /// There is nothing more: appends what waited.
+    ///
+    /// # Errors
+    /// When what came is of no known protocol.
+    fn finish(&mut self, to: &mut Vec<Step>) -> Result<(), Error>;
 
     /// Fills in what is known of the way.
     fn tell(&self, link: &mut Link);
@@ -152,6 +158,12 @@ impl Live<'_> {
     pub fn run(mut self, face: &mut dyn Face) -> Result<(View, Ended), Error> {
         let mut link = Link { name: self.port.name.clone(), ..Link::default() };
         let ended = self.follow(face, &mut link);
+        let mut steps = Vec::new();
+        let last = self.decode.as_mut().map_or(Ok(()), |decode| decode.finish(&mut steps));
+        let ended = ended.and_then(|ended| last.and(self.proceed(steps)).map(|()| ended));
+        if let Some(decode) = &self.decode {
+            decode.tell(&mut link);
+        }
         let over = matches!(ended, Ok(Ended::Goal | Ended::Input | Ended::Quit));
         let kept = self.keep.checkpoint(&self.session, over);
         let closed = self.keep.close();
@@ -236,12 +248,7 @@ impl Live<'_> {
                 if let Some(decode) = &mut self.decode {
                     decode.feed(arrival_ns, &bytes, &mut steps)?;
                 }
-                for step in steps {
-                    match step {
-                        Step::Samples(block) => self.take(block)?,
-                        Step::Restart => self.session.restart(),
-                    }
-                }
+                self.proceed(steps)?;
             }
             Arrival::Samples(block) => self.take(block)?,
             Arrival::Gone(why) => {
@@ -256,6 +263,16 @@ impl Live<'_> {
             Arrival::Failed(error) => return Err(error),
         }
         Ok(true)
+    }
+
+    fn proceed(&mut self, steps: Vec<Step>) -> Result<(), Error> {
+        for step in steps {
+            match step {
+                Step::Samples(block) => self.take(block)?,
+                Step::Restart => self.session.restart(),
+            }
+        }
+        Ok(())
     }
 
     fn take(&mut self, mut block: Block) -> Result<(), Error> {

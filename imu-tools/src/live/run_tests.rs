@@ -46,6 +46,10 @@ impl Decode for Text {
         Ok(())
     }
 
+    fn finish(&mut self, _: &mut Vec<Step>) -> Result<(), Error> {
+        Ok(())
+    }
+
     fn tell(&self, link: &mut Link) {
         (link.bytes, link.refused) = (self.bytes, self.refused);
     }

@@ -98,8 +98,8 @@ fn about(seconds: f64) -> String {
 /// Rate, gaps, bytes refused and temperature, each where it is known.
 #[must_use]
 pub fn link(view: &View) -> Vec<String> {
-    let mut said = Vec::new();
     let link = &view.link;
+    let mut said: Vec<String> = link.protocol.map(str::to_owned).into_iter().collect();
     if let Some(sensor) = sensors(view).next() {
         let stamps = &sensor.stamps;
         let clock = link.clock;
@@ -213,6 +213,7 @@ pub fn json(view: &View, within: f64) -> Value {
         "marks": view.marks.iter().map(|mark| mark.at_s).collect::<Vec<_>>(),
         "link": {
             "name": link.name,
+            "protocol": link.protocol,
             "gone": link.gone,
             "bytes": link.bytes,
             "refused": link.refused,
