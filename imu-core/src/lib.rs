@@ -8,6 +8,7 @@ extern crate std;
 pub mod allan;
 pub mod delta;
 mod error;
+pub mod frame;
 pub mod integrate;
 mod lanes;
 mod matrix;

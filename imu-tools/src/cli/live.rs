@@ -96,7 +96,8 @@ const CHECKPOINT: &str = "imu-live.checkpoint";
 /// What is aimed at where no goal is given: how long until then is shown.
 const WITHIN: f64 = 0.1;
 
-fn speed(text: &str) -> Result<f64, String> {
+/// How many times as fast; 0 for as fast as can be.
+pub(super) fn speed(text: &str) -> Result<f64, String> {
     let number = if text == "max" { Ok(0.0) } else { text.parse() };
     let number = number.ok().filter(|speed: &f64| speed.is_finite() && *speed >= 0.0);
     number.ok_or_else(|| "how many times faster, such as 1 or 100, or max".into())

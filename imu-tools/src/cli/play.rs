@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{progress, same_target};
 use crate::error::Error;
+use crate::live::simulated::Terminal;
 use crate::recording::{self, Block, Contents, Format, Note, SampleKind, Sink, Source as _};
 use crate::scene::{Scene, Simulator, TermsWriter, TruthWriter};
 
@@ -14,6 +15,8 @@ pub(super) struct Targets<'a> {
     pub(super) format: Option<Format>,
     pub(super) truth: Option<&'a Path>,
     pub(super) terms: Option<&'a Path>,
+    /// How many times as fast as real time a simulated terminal is; 0 as fast as it is read.
+    pub(super) speed: f64,
 }
 
 /// What was written.
@@ -52,11 +55,11 @@ impl Targets<'_> {
     /// Plays a scene to its end, and tells what there is to tell.
     pub(super) fn play(&self, scene: &Scene) -> Result<Played, Error> {
         let mut simulator = Simulator::new(scene)?;
-        let format = self.format.map_or_else(|| Format::of(self.output), Ok)?;
         let contents =
             Contents { samples: scene.samples, temperature: scene.temperature.is_some() };
+        let (sink, unsaid) = self.sink(scene, contents)?;
         let mut files = Files {
-            sink: recording::create_with(self.output, format, contents)?,
+            sink,
             truth: self.truth.map(|path| TruthWriter::create(path, scene)).transpose()?,
             terms: self.terms.map(|path| TermsWriter::create(path, scene)).transpose()?,
         };
@@ -64,10 +67,26 @@ impl Targets<'_> {
         let due = simulator.samples_left();
         let lost = files.write(&mut simulator)?;
         files.finish()?;
-        if let Some(unsaid) = unsaid(format, contents) {
+        if let Some(unsaid) = unsaid {
             super::say(&format!("imu: {}: {unsaid}", super::target_name(self.output)));
         }
         Ok(Played { samples: due - lost, lost })
+    }
+
+    /// The file or terminal that samples go to, and what it cannot say of them.
+    fn sink(
+        &self,
+        scene: &Scene,
+        contents: Contents,
+    ) -> Result<(Box<dyn Sink>, Option<String>), Error> {
+        if let Some(terminal) = Terminal::of(self.output)? {
+            let told = |name: &Path| super::say(&format!("imu: a sensor is at {}", name.display()));
+            let sink = terminal.open(scene.samples, scene.rate.hz(), self.speed, told)?;
+            return Ok((sink, None));
+        }
+        let format = self.format.map_or_else(|| Format::of(self.output), Ok)?;
+        let sink = recording::create_with(self.output, format, contents)?;
+        Ok((sink, unsaid(format, contents)))
     }
 }
 

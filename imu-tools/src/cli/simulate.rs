@@ -21,6 +21,8 @@ Examples:
       into a pipe, as CSV
   imu simulate scene.toml -o imu.csv --samples increments --truth-terms terms.csv
       increments of angle and velocity, and what each error adds to them
+  imu simulate low --duration 1h --rate 1000 -o pty:vectornav:/tmp/imu
+      as a sensor would send it: imu live /tmp/imu reads it
   imu simulate flight.toml -o flight.bag --truth flight.truth.csv
       along your own trajectory, if the scene has a line trajectory = \"poses.tum\" (TUM or EuRoC)
   imu simulate scene.toml -o imu.bag
@@ -47,7 +49,8 @@ pub(super) struct Simulate {
     /// low, mid or high, or a TOML scene file
     #[arg(value_name = "SCENE", default_value = "mid")]
     scene: String,
-    /// Where to write: FILE.bag (ROS 1), FILE.mcap (ROS 2), FILE.csv, FOLDER/ (EuRoC), or - for a pipe
+    /// Where to write: FILE.bag (ROS 1), FILE.mcap (ROS 2), FILE.csv, FOLDER/ (EuRoC), - for a pipe, or
+    /// pty:PROTOCOL[:LINK], a terminal that speaks as a sensor does, in real time (docs/live-protocols.md)
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Write this format whatever the name: bag, mcap, csv or euroc (a pipe gets csv unless you say so)
@@ -72,6 +75,9 @@ pub(super) struct Simulate {
     /// mean or increments [default: the scene's, instantaneous]
     #[arg(long, value_name = "KIND")]
     samples: Option<SampleKind>,
+    /// With pty: so many times as fast as real time; max or 0: as fast as it is read
+    #[arg(long, value_name = "N", default_value = "1", value_parser = super::live::speed)]
+    speed: f64,
     /// Write pose, velocity, true rate and force, and the bias carried, as CSV
     #[arg(long, value_name = "FILE")]
     truth: Option<PathBuf>,
@@ -88,6 +94,7 @@ impl Simulate {
             format: self.format,
             truth: self.truth.as_deref(),
             terms: self.truth_terms.as_deref(),
+            speed: self.speed,
         };
         let is_file = Preset::from_name(&self.scene).is_none();
         targets.check(is_file.then_some((Path::new(&self.scene), "the scene itself")))?;

@@ -246,6 +246,7 @@ impl Imu {
             format: self.format,
             truth: self.truth.as_deref(),
             terms: None,
+            speed: 1.0,
         };
         targets.check(
             (self.file != Path::new("-")).then_some((&self.file, "the trajectory itself")),

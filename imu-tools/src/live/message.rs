@@ -41,6 +41,16 @@ pub struct Ticks {
     pub wraps_at: Option<u64>,
 }
 
+impl Ticks {
+    /// The same time in ticks of another length, `per_second` of them: whole ones.
+    #[must_use]
+    pub fn in_units_of(self, per_second: u64) -> u64 {
+        let value = u128::from(self.value) * u128::from(per_second);
+        let value = value.checked_div(self.per_second.into()).unwrap_or(0);
+        u64::try_from(value).unwrap_or(u64::MAX)
+    }
+}
+
 /// A reading of a counter that counts messages (or samples of which every n-th is sent).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Count {

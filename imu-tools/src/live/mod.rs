@@ -17,5 +17,6 @@ pub mod run;
 pub mod screen;
 pub mod session;
 mod shown;
+pub mod simulated;
 
 pub use message::{Count, Kind, Message, Ticks};

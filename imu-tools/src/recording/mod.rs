@@ -436,7 +436,7 @@ fn add_streams(all: &mut Vec<Stream>, more: Vec<Stream>) {
 }
 
 /// Walks both sensors of a block by time; samples of one instant come together.
-fn merge(
+pub(crate) fn merge(
     block: &Block,
     mut row: impl FnMut(i64, Option<[f64; 3]>, Option<[f64; 3]>) -> Result<(), Error>,
 ) -> Result<(), Error> {

@@ -109,12 +109,24 @@ impl Columns {
     /// # Errors
     /// What is wrong with it, in words.
     pub fn from_spec(spec: &str) -> Result<Self, String> {
+        Self::of_spec(spec)?.checked()
+    }
+
+    /// The same of lines that come live, and need no time.
+    ///
+    /// # Errors
+    /// As [`Self::from_spec`].
+    pub fn live_from_spec(spec: &str) -> Result<Self, String> {
+        Self::of_spec(spec)?.checked_sensors()
+    }
+
+    fn of_spec(spec: &str) -> Result<Self, String> {
         let column = |key: &str| match key.trim() {
             "-" => Ok(Column::Other),
             key => by_key(key).ok_or_else(|| format!("'{key}' is none of {KEYS} and -")),
         };
         let columns = spec.split(',').map(column).collect::<Result<_, _>>()?;
-        Self { columns, ..Self::default() }.checked()
+        Ok(Self { columns, ..Self::default() })
     }
 
     /// From names of columns that the user gives, such as `t=stamp,gx=omega.x`.
@@ -158,6 +170,18 @@ impl Columns {
     /// # Errors
     /// What is missing, in words.
     pub fn from_names(names: &[&[u8]], hint: Option<Sensor>) -> Result<Self, String> {
+        Self::of_names(names, hint).checked()
+    }
+
+    /// The same of lines that come live, and need no time.
+    ///
+    /// # Errors
+    /// As [`Self::from_names`].
+    pub fn live_from_names(names: &[&[u8]]) -> Result<Self, String> {
+        Self::of_names(names, None).checked_sensors()
+    }
+
+    fn of_names(names: &[&[u8]], hint: Option<Sensor>) -> Self {
         let parts: Vec<Name> = names.iter().map(|text| Name::new(text)).collect();
         let mut found = Self::default();
         let time = time_among(&parts);
@@ -179,7 +203,7 @@ impl Columns {
             found.hear_name(column, text, name);
             found.columns.push(column);
         }
-        found.checked()
+        found
     }
 
     /// Takes in whether a column's name, `text`, tells of increments, and its unit.
@@ -235,15 +259,21 @@ impl Columns {
     }
 
     /// Time once and at least one whole sensor.
-    fn checked(mut self) -> Result<Self, String> {
+    fn checked(self) -> Result<Self, String> {
         let count = |column: Column| self.columns.iter().filter(|&&c| c == column).count();
-        let axes = |column: fn(u8) -> Column| [0, 1, 2].map(|axis| count(column(axis)));
         let time = [Column::Time, Column::Date, Column::Seconds, Column::Nanoseconds].map(count);
         match time {
             [0, _, 0, 0] => return Err("there is no column of time".into()),
             [1, 0 | 1, 0, 0] | [0, 0, 1, 1] => {}
             _ => return Err("time needs one column, or sec and nsec, or date and t".into()),
         }
+        self.checked_sensors()
+    }
+
+    /// At least one whole sensor.
+    fn checked_sensors(mut self) -> Result<Self, String> {
+        let count = |column: Column| self.columns.iter().filter(|&&c| c == column).count();
+        let axes = |column: fn(u8) -> Column| [0, 1, 2].map(|axis| count(column(axis)));
         match (axes(Column::Rate), axes(Column::Force)) {
             ([1, 1, 1], [1, 1, 1] | [0, 0, 0]) | ([0, 0, 0], [1, 1, 1]) => {}
             ([0, 0, 0], [0, 0, 0]) => {

@@ -9,21 +9,21 @@
 //! that failed.
 
 mod beside;
-pub(super) mod celsius;
-pub(super) mod columns;
+pub(crate) mod celsius;
+pub(crate) mod columns;
 #[cfg(test)]
 mod columns_tests;
 mod date;
-pub(super) mod dialect;
+pub(crate) mod dialect;
 pub(super) mod granted;
 pub(super) mod increments;
 mod layout;
-mod names;
-pub(super) mod number;
+pub(crate) mod names;
+pub(crate) mod number;
 mod reader;
 mod row;
-mod time_unit;
-mod told;
+pub(crate) mod time_unit;
+pub(crate) mod told;
 mod writer;
 
 pub use reader::CsvReader;

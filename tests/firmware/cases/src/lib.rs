@@ -12,6 +12,7 @@ use imu_core::Real;
 
 mod edf;
 mod fit;
+mod frame;
 pub mod inputs;
 mod integrate;
 mod interpolate;
@@ -111,6 +112,7 @@ pub const CASES: &[Case] = &[
     Case { name: "Allan f64 4 cost", run: ladder::cost::<f64, 4, 1> },
     Case { name: "Hadamard f64 1 cost", run: ladder::cost::<f64, 1, 2> },
     Case { name: "Hadamard f64 4 cost", run: ladder::cost::<f64, 4, 2> },
+    Case { name: "frame", run: frame::case },
     Case { name: "fit", run: fit::bits },
     Case { name: "fit cost", run: fit::cost },
     Case { name: "term fit", run: term_fit::bits },
