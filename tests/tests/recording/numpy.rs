@@ -4,7 +4,7 @@ use std::io::Write as _;
 
 use imu_tests::recordings::Folder;
 use imu_tools::error::Error;
-use imu_tools::recording::{self, Block, Note, ReadOptions, Sample};
+use imu_tools::recording::{self, Block, Note, ReadOptions, Sample, SampleKind};
 
 const ROWS: usize = 10_000;
 
@@ -270,4 +270,26 @@ fn what_cannot_be_read_is_one_sentence() {
     let (block, notes) = read(&folder.put("claim.npy", claim));
     assert_eq!(block.gyroscope.len(), 2);
     assert!(warnings(&notes)[0].contains("is cut off"));
+}
+
+#[test]
+fn arrays_of_increments_are_divided_by_their_time() {
+    let folder = Folder::new();
+    let array = |shape: &str, values: &[f64]| {
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        npy("'<f8'", false, shape, &bytes)
+    };
+    let arrays = [
+        ("t", array("(2,)", &[0.0, 0.01])),
+        ("dtheta", array("(2, 3)", &[0.01, 0.0, 0.02, 0.01, 0.0, 0.02])),
+        ("dvel", array("(2, 3)", &[0.0, 0.0, 0.1, 0.0, 0.0, 0.1])),
+    ];
+    let path = folder.put("increments.npz", npz(&arrays, false));
+    let (block, notes) = read(&path);
+    assert!(block.gyroscope.iter().all(|sample| sample.value == [1.0, 0.0, 2.0]), "{notes:?}");
+    assert!(block.accelerometer.iter().all(|sample| sample.value == [0.0, 0.0, 10.0]));
+    let told = |note: &Note| matches!(note, Note::Info(what) if what.contains("each is divided"));
+    assert!(notes.iter().any(told), "{notes:?}");
+    let source = recording::open(path.as_ref(), &ReadOptions::default()).unwrap();
+    assert_eq!(source.samples(), Some(SampleKind::Mean));
 }
