@@ -3,7 +3,7 @@
 //! A chunk of bytes is read when the USB adapter, the kernel and the scheduler please: up to 16 ms
 //! late, many messages at once, after a stall 300 ms late. When a message was sent is told by the
 //! sensor's ticks or, without them, by its count or by the mere number of messages before it; these
-//! are mapped to the host's clock by a curve under the earliest arrivals ([`envelope`]). A sample's
+//! are mapped to the host's clock by a curve under the earliest arrivals (`envelope.rs`). A sample's
 //! stamp is a point of a line that is bent towards that curve once a second and never breaks: no
 //! jitter of arrival gets into the spacing of samples. `docs/live-clock.md` derives the method and
 //! says how good it is.
@@ -84,7 +84,7 @@ pub struct ClockStatus {
 }
 
 /// Stamps messages. Its memory does not grow: 600 points of a curve, and at the start of a stretch
-/// at most [`MOST_HELD`] messages. A copy of it that was written and read back lacks only the latter.
+/// at most 4096 messages. A copy of it that was written and read back lacks only the latter.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Clock {
     nominal_rate: Option<f64>,
