@@ -11,6 +11,8 @@ pub mod flights;
 pub mod mcaps;
 pub mod monte_carlo;
 pub mod recordings;
+#[cfg(target_os = "linux")]
+pub mod streams;
 pub mod term_records;
 pub mod ulog_outcomes;
 pub mod ulogs;

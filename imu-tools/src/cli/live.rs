@@ -12,8 +12,10 @@ use crate::calibrate::Options;
 use crate::error::Error;
 use crate::live::checkpoint;
 use crate::live::goal::Goal;
+use crate::live::intake::{self, Intake};
 use crate::live::port::{self, Address, How};
-use crate::live::run::{self, Ended, Face, Keep};
+use crate::live::protocol::Protocol;
+use crate::live::run::{self, Decode, Ended, Face, Keep};
 use crate::live::screen::Screen;
 use crate::live::session::{Before, Session, View};
 use crate::output::{self, Output};
@@ -48,6 +50,9 @@ pub(super) struct Live {
     /// Bits a second of a serial port; without it the usual ones are tried
     #[arg(long, value_name = "BAUD")]
     baud: Option<u32>,
+    /// What the sensor speaks; without it the bytes show it. docs/live-protocols.md lists the protocols
+    #[arg(long, value_name = "NAME")]
+    protocol: Option<Protocol>,
     /// Replay a recording so many times faster than it was recorded; max or 0: as fast as can be
     #[arg(long, value_name = "N", default_value = "max", value_parser = speed)]
     speed: f64,
@@ -130,16 +135,17 @@ impl Live {
             let wanted = self.resume || !address.comes_again();
             wanted.then(|| PathBuf::from(CHECKPOINT))
         });
-        if !address.comes_again() {
-            return Err(Error::usage(format!(
-                "{}: only recordings can be followed as yet, and no bytes of a sensor",
-                address.name()
-            )));
-        }
         output::heed_signals();
         let session = self.session(&address, &options, checkpoint.as_deref())?;
         let how = How { baud: self.baud, reading: self.reading.options(), speed: self.speed };
-        let port = port::open(&address, &how, &|_| None)?;
+        let decode: Option<Box<dyn Decode>> = if address.comes_again() {
+            None
+        } else {
+            let reading = self.reading.options();
+            Some(Box::new(Intake::new(&address.name(), self.protocol, &reading)?))
+        };
+        // Of a sensor whose protocol is known the silence of a wrong rate is told by its decoder.
+        let port = port::open(&address, &how, &intake::refused)?;
         let keep = Keep {
             checkpoint: checkpoint
                 .map(|path| (path, Duration::from_secs_f64(self.checkpoint_every))),
@@ -171,7 +177,7 @@ impl Live {
             })
         };
         let goal = Goal { within: self.until, span_s: self.span };
-        let live = run::Live { session, port, decode: None, keep, goal, save: &mut save };
+        let live = run::Live { session, port, decode, keep, goal, save: &mut save };
         let ran = live.run(&mut *face);
         drop(face);
         let (view, ended) = ran?;

@@ -8,6 +8,7 @@
 pub mod checkpoint;
 pub mod clock;
 pub mod goal;
+pub mod intake;
 pub mod link;
 mod message;
 pub mod port;

@@ -5,6 +5,8 @@ use std::process::{Child, Stdio};
 use std::time::Duration;
 
 use imu_tests::command::{imu, run, said};
+#[cfg(target_os = "linux")]
+use imu_tests::streams::Streaming;
 use imu_tools::calibrate::{Options, calibrate};
 use imu_tools::live::link::Link;
 use imu_tools::live::session::Session;
@@ -263,4 +265,61 @@ fn what_cannot_be_is_one_sentence() {
         assert_eq!((said.code, said.err.lines().count()), (code, 1), "{arguments:?}: {}", said.err);
         assert!(said.err.contains(words), "{}", said.err);
     }
+}
+
+/// Ends a session as Ctrl-C does, and takes its report.
+#[cfg(target_os = "linux")]
+fn interrupt(child: Child) -> imu_tests::command::Said {
+    let pid = child.id().to_string();
+    assert!(
+        std::process::Command::new("kill").args(["-s", "INT", &pid]).status().unwrap().success()
+    );
+    said(&child.wait_with_output().unwrap())
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_stream_is_what_calibration_says_of_the_samples_that_were_recorded() {
+    let folder = tempfile::tempdir().unwrap();
+    let (checkpoint, record) = (folder.path().join("c"), folder.path().join("r.csv"));
+    let sensor = Streaming::start();
+    let more = ["--baud", "115200", "--record", text(&record)];
+    let child = start(&sensor.device, &checkpoint, &more);
+    wait_for(&record, 1_000_000);
+    let ended = interrupt(child);
+    assert_eq!(ended.code, 130, "{}", ended.err);
+    let (live, offline) = (sensors(&ended.out), calibrated(&record));
+    assert!(live.0["samples"].as_u64().unwrap() > 5000, "{}", ended.out);
+    assert_eq!(live.0["missing"], 0, "{}", live.0);
+    assert_eq!(live, offline);
+}
+
+/// What is missing after a kill is a gap as long as the clock says, and nothing is there twice.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_killed_stream_goes_on_with_a_gap() {
+    let folder = tempfile::tempdir().unwrap();
+    let checkpoint = folder.path().join("c");
+    let sensor = Streaming::start();
+    let more = [&["--baud", "115200", "--protocol", "imu-frame"], &OFTEN[..]].concat();
+    let mut child = start(&sensor.device, &checkpoint, &more);
+    // The first samples are held back for two seconds, until their clock is known.
+    std::thread::sleep(Duration::from_millis(6000));
+    wait_for(&checkpoint, 100_000);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    let child = start(&sensor.device, &checkpoint, &[&more[..], &["--resume"]].concat());
+    std::thread::sleep(Duration::from_millis(6000));
+    let ended = interrupt(child);
+    let sent = sensor.sent();
+    assert_eq!(ended.code, 130, "{}", ended.err);
+    let (gyroscope, _) = sensors(&ended.out);
+    let of = |name: &str| gyroscope[name].as_u64().unwrap();
+    assert_eq!((of("duplicates"), of("backward"), of("restarts")), (0, 0, 0), "{gyroscope}");
+    assert_eq!(of("gap_count"), 1, "{gyroscope}");
+    // At least the pause is missing; and all that was sent is there or missing, but for the beginning
+    // before the port was open, and the burst at the end.
+    assert!(of("missing") >= 700, "{gyroscope}");
+    assert!(of("samples") + of("missing") <= sent, "{gyroscope} of {sent}");
 }

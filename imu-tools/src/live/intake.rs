@@ -1,0 +1,296 @@
+//! Bytes of a port to samples: which protocol it is, its messages, their times.
+//!
+//! The first bytes are kept until they show the protocol, and are then read as if they came now. Bytes
+//! of which hardly any is part of a message end the session with a sentence: a wrong baud rate, or a
+//! protocol that is none of ours.
+
+use super::clock::Clock;
+use super::link::{Link, LinkClock};
+use super::protocol::{Decoder, Protocol, candidates, recognise};
+use super::rates::rates;
+use super::run::{Decode, Step};
+use super::{Message, shown};
+use crate::error::Error;
+use crate::recording::{Block, ReadOptions, Temperature};
+
+/// Bytes that are tried for a protocol now and then, and by which it must have shown.
+const TRIED: usize = 512;
+const ENOUGH: usize = 8192;
+
+/// Bytes after which a stream of refused ones is given up.
+const PATIENCE: u64 = 16_384;
+
+/// The part of them that is too many.
+const TOO_MANY: f64 = 0.95;
+
+/// From bytes to samples.
+pub struct Intake {
+    name: String,
+    options: ReadOptions,
+    state: State,
+    clock: Clock,
+    /// When the latest bytes came.
+    latest_ns: i64,
+}
+
+enum State {
+    /// Nobody knows the protocol yet: what came, and when.
+    Unknown { first: Vec<u8>, pieces: Vec<(i64, usize)>, tried: usize },
+    /// It is known.
+    Known(Decoder),
+}
+
+/// The part of some bytes that no protocol explains; `None` where they are too few to say.
+#[must_use]
+pub fn refused(bytes: &[u8]) -> Option<f64> {
+    /// Fewer say nothing.
+    const FEWEST: usize = 64;
+    if bytes.len() < FEWEST {
+        return None;
+    }
+    Some(match recognise(bytes) {
+        Some(_) => 0.0,
+        None => 1.0 - candidates(bytes).first().map_or(0.0, |best| best.accepted),
+    })
+}
+
+impl Intake {
+    /// Of a port of this name, by `protocol` or that which the bytes show. Of `options`, those for tables
+    /// tell what lines of text hold.
+    ///
+    /// # Errors
+    /// When the options are none for such lines.
+    pub fn new(
+        name: &str,
+        protocol: Option<Protocol>,
+        options: &ReadOptions,
+    ) -> Result<Self, Error> {
+        let state = match protocol {
+            Some(protocol) => State::Known(Decoder::new(protocol, options)?),
+            None => State::Unknown { first: Vec::new(), pieces: Vec::new(), tried: 0 },
+        };
+        let clock = Clock::new(None);
+        Ok(Self { name: name.to_owned(), options: options.clone(), state, clock, latest_ns: 0 })
+    }
+
+    /// Looks which protocol the first bytes speak, and reads them then.
+    fn look(&mut self, at_end: bool, to: &mut Vec<Step>) -> Result<(), Error> {
+        let State::Unknown { first, pieces, tried } = &mut self.state else { return Ok(()) };
+        if first.len() < *tried + TRIED && !at_end {
+            return Ok(());
+        }
+        *tried = first.len();
+        // Columns are for text.
+        let told = self.options.columns.is_some() || self.options.map.is_some();
+        let protocol = if told { Some(Protocol::Text) } else { recognise(first) };
+        let Some(protocol) = protocol else {
+            if first.len() < ENOUGH && !at_end {
+                return Ok(());
+            }
+            return Err(unknown(&self.name, first));
+        };
+        let mut decoder = Decoder::new(protocol, &self.options)?;
+        let (first, pieces) = (std::mem::take(first), std::mem::take(pieces));
+        let mut rest = first.as_slice();
+        for (arrival_ns, length) in pieces {
+            let (piece, later) = rest.split_at(length.min(rest.len()));
+            decode(&mut decoder, &mut self.clock, arrival_ns, piece, to);
+            rest = later;
+        }
+        self.state = State::Known(decoder);
+        Ok(())
+    }
+}
+
+impl Decode for Intake {
+    fn feed(&mut self, arrival_ns: i64, bytes: &[u8], to: &mut Vec<Step>) -> Result<(), Error> {
+        self.latest_ns = arrival_ns;
+        match &mut self.state {
+            State::Unknown { first, pieces, .. } => {
+                first.extend_from_slice(bytes);
+                pieces.push((arrival_ns, bytes.len()));
+                self.look(false, to)
+            }
+            State::Known(decoder) => {
+                decode(decoder, &mut self.clock, arrival_ns, bytes, to);
+                let tally = decoder.tally();
+                if tally.bytes > PATIENCE && tally.share_refused() > TOO_MANY {
+                    return Err(Error::data(format!(
+                        "{:.0} % of the bytes of {} are no {}: the baud rate is wrong (see --baud), or \
+                         the protocol is (see --protocol); the latest bytes are {}",
+                        100.0 * tally.share_refused(),
+                        self.name,
+                        decoder.protocol(),
+                        shown::bytes(bytes)
+                    )));
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn finish(&mut self, to: &mut Vec<Step>) -> Result<(), Error> {
+        self.look(true, to)?;
+        let Self { state, clock, latest_ns, .. } = self;
+        let mut pieces = Pieces::new(to);
+        if let State::Known(decoder) = state {
+            let arrival_ns = *latest_ns;
+            decoder.end(&mut |message| {
+                clock.take(arrival_ns, &message, |message, taken| pieces.take(message, &taken));
+            });
+        }
+        clock.finish(|message, taken| pieces.take(message, &taken));
+        pieces.close();
+        Ok(())
+    }
+
+    fn tell(&self, link: &mut Link) {
+        let State::Known(decoder) = &self.state else {
+            if let State::Unknown { first, .. } = &self.state {
+                link.bytes = first.len() as u64;
+            }
+            return;
+        };
+        let tally = decoder.tally();
+        link.protocol = Some(decoder.protocol().name());
+        (link.bytes, link.refused) = (tally.bytes, tally.refused);
+        (link.bad_checksums, link.messages) = (tally.damaged, tally.messages);
+        let status = self.clock.status();
+        link.clock = (status.rate_hz > 0.0).then_some(LinkClock {
+            rate_hz: status.rate_hz,
+            rate_sd_hz: status.rate_sd_hz,
+            jitter_s: status.jitter_s,
+            lost: status.lost,
+            lost_is_certain: status.lost_is_certain,
+            restarts: status.restarts,
+        });
+    }
+}
+
+/// What no protocol explains.
+fn unknown(name: &str, bytes: &[u8]) -> Error {
+    if bytes.is_empty() {
+        return Error::data(format!(
+            "{name} ended without a byte: see that something is sent to it"
+        ));
+    }
+    let share = candidates(bytes).first().map_or(0.0, |best| best.accepted);
+    Error::data(format!(
+        "what {name} sends is of no known protocol ({:.0} % of the bytes are refused): the baud rate may be \
+         wrong (see --baud), or --protocol or --columns are wanted; the first bytes are {}",
+        100.0 * (1.0 - share),
+        shown::bytes(bytes)
+    ))
+}
+
+/// Takes bytes through decoder and clock.
+fn decode(
+    decoder: &mut Decoder,
+    clock: &mut Clock,
+    arrival_ns: i64,
+    bytes: &[u8],
+    to: &mut Vec<Step>,
+) {
+    let mut pieces = Pieces::new(to);
+    decoder.feed(bytes, &mut |message| {
+        clock.take(arrival_ns, &message, |message, taken| pieces.take(message, &taken));
+    });
+    pieces.close();
+}
+
+/// Puts samples into blocks, with restarts between.
+struct Pieces<'a> {
+    block: Block,
+    to: &'a mut Vec<Step>,
+}
+
+impl<'a> Pieces<'a> {
+    fn new(to: &'a mut Vec<Step>) -> Self {
+        Self { block: Block::default(), to }
+    }
+
+    fn take(&mut self, message: &Message, taken: &super::clock::Taken) {
+        if taken.restart {
+            self.close();
+            self.to.push(Step::Restart);
+        }
+        let (gyroscope, accelerometer) = rates(message, taken);
+        self.block.gyroscope.extend(gyroscope);
+        self.block.accelerometer.extend(accelerometer);
+        let stamp_ns = taken.stamp_ns;
+        self.block
+            .temperature
+            .extend(message.celsius.map(|celsius| Temperature { stamp_ns, celsius }));
+    }
+
+    fn close(&mut self) {
+        if !self.block.is_empty() {
+            self.to.push(Step::Samples(std::mem::take(&mut self.block)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::live::protocol::Encoder;
+    use crate::live::{Kind, Message, Ticks};
+
+    /// Frames of our own at 1 kHz.
+    fn bytes(range: std::ops::Range<u64>) -> Vec<u8> {
+        let (mut bytes, mut encoder) = (Vec::new(), Encoder::new(Protocol::ImuFrame));
+        for number in range {
+            let ticks = Ticks { value: number * 1000, per_second: 1_000_000, wraps_at: None };
+            let message = Message {
+                gyroscope: Some([number as f64; 3]),
+                accelerometer: Some([0.0, 0.0, 9.75]),
+                kind: Kind::Rates,
+                ticks: Some(ticks),
+                ..Message::default()
+            };
+            encoder.encode(&message, &mut bytes);
+        }
+        bytes
+    }
+
+    #[test]
+    fn the_protocol_is_found_and_nothing_of_the_first_bytes_is_lost() {
+        let bytes = bytes(0..5000);
+        let mut intake = Intake::new("it", None, &ReadOptions::default()).unwrap();
+        let mut steps = Vec::new();
+        let length = bytes.len() / 5000;
+        for (number, piece) in bytes.chunks(length * 16).enumerate() {
+            let arrival_ns = 1_000_000_000 + (number as i64 + 1) * 16_000_000;
+            intake.feed(arrival_ns, piece, &mut steps).unwrap();
+        }
+        intake.finish(&mut steps).unwrap();
+        let blocks = steps.iter().map(|step| match step {
+            Step::Samples(block) => block,
+            Step::Restart => panic!("nothing began anew"),
+        });
+        let values: Vec<f64> =
+            blocks.flat_map(|block| &block.gyroscope).map(|sample| sample.value[0]).collect();
+        assert_eq!(values, (0..5000).map(f64::from).collect::<Vec<_>>());
+        let mut link = Link::default();
+        intake.tell(&mut link);
+        assert_eq!((link.protocol, link.refused, link.messages), (Some("imu-frame"), 0, 5000));
+        assert!((link.clock.unwrap().rate_hz - 1000.0).abs() < 1.0);
+    }
+
+    #[test]
+    fn noise_is_refused_with_its_first_bytes() {
+        let noise: Vec<u8> =
+            (0..20_000_u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+        let mut intake = Intake::new("tty", None, &ReadOptions::default()).unwrap();
+        let error = intake.feed(0, &noise, &mut Vec::new()).unwrap_err().to_string();
+        assert!(
+            error.contains("what tty sends is of no known protocol (") && error.contains("00 "),
+            "{error}"
+        );
+        let protocol = Some(Protocol::WitMotion);
+        let mut intake = Intake::new("tty", protocol, &ReadOptions::default()).unwrap();
+        let error = intake.feed(0, &noise, &mut Vec::new()).unwrap_err().to_string();
+        assert!(error.contains("% of the bytes of tty are no witmotion: the baud rate"), "{error}");
+        assert!(refused(&noise).unwrap() > 0.5 && refused(&bytes(0..100)) == Some(0.0));
+    }
+}
