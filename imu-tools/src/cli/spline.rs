@@ -253,6 +253,12 @@ impl Imu {
         )?;
         let route = Arc::new(self.how.open(&self.file)?);
         let mut scene = Scene { gravity: self.gravity, ..Scene::along(route, rate, self.samples) };
+        if scene.duration_ns == 0 {
+            return Err(Error::usage(format!(
+                "no whole interval of {} Hz fits into the curve: take a higher --rate",
+                self.rate
+            )));
+        }
         scene.gyroscope.lever_arm_m = arm;
         scene.accelerometer.lever_arm_m = arm;
         let Played { samples, .. } = targets.play(&scene)?;

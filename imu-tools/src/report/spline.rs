@@ -125,7 +125,7 @@ pub fn json(fitted: &Fitted) -> Value {
         });
         told.collect()
     };
-    let (first, last) = fitted.fit.knots.span();
+    let (first, last) = fitted.fit.span_ns;
     json!({
         "poses": {
             "path": fitted.path,

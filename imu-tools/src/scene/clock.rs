@@ -46,6 +46,14 @@ impl Rate {
         Ticks::new(self)
     }
 
+    /// Whether a sample is due this long after the first and no earlier: `samples_in` does not count it.
+    pub(super) fn is_due_at(self, offset_ns: u64) -> bool {
+        let (exact, rate) = (u128::from(offset_ns) * u128::from(self.micro_hz), u128::from(NS_UHZ));
+        let sample = u128::from(self.samples_in(offset_ns));
+        // Its exact time is not before this one, and less than half a nanosecond after it.
+        2 * (sample * rate - exact) < u128::from(self.micro_hz)
+    }
+
     /// Samples due in `[0, duration)`: 4 h at 200 Hz are 2 880 000.
     #[must_use]
     pub fn samples_in(self, duration_ns: u64) -> u64 {
@@ -98,6 +106,10 @@ mod tests {
         assert_eq!(rate.samples_in(duration), 2_880_000);
         assert_eq!(rate.samples_in(duration + 1), 2_880_001);
         assert_eq!(rate.samples_in(0), 0);
+        assert!(rate.is_due_at(duration) && rate.is_due_at(0) && !rate.is_due_at(duration + 1));
+        let third = Rate::from_hz(3.0).unwrap();
+        let due = |offset_ns| third.is_due_at(offset_ns);
+        assert!(due(333_333_333) && !due(333_333_334) && !due(666_666_666) && due(1_000_000_000));
         assert_eq!(Ticks::new(rate).nth(2_879_999), Some(14_400_000_000_000 - 5_000_000));
     }
 

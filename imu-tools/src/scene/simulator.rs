@@ -79,7 +79,7 @@ impl Simulator {
             layer,
             start_ns: scene.start_ns,
             ticks: Ticks::new(scene.rate),
-            left: scene.rate.samples_in(scene.duration_ns),
+            left: scene.samples_due(),
             interval_s: scene.rate.interval_s(),
             samples: scene.samples,
             temperature: scene.temperature,

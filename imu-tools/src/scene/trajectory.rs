@@ -125,11 +125,27 @@ impl Scene {
     /// first of them is whole) to its last.
     #[must_use]
     pub fn along(route: Arc<Route>, rate: Rate, samples: SampleKind) -> Self {
-        let (first, last) = route.knots().span();
+        let (first, last) = route.span_ns();
         let start_ns = first.saturating_add(before_ns(rate, samples));
         let duration_ns = u64::try_from(i128::from(last) - i128::from(start_ns)).unwrap_or(0);
         let motion = Path::Along(route);
         Self { motion, rate, samples, start_ns, duration_ns, ..Self::default() }
+    }
+}
+
+impl Scene {
+    /// Samples of each sensor, lost ones included: those before the end of the duration, and one at the very end of a
+    /// curve that is followed to its last instant.
+    pub(super) fn samples_due(&self) -> u64 {
+        let ends_with_curve = match &self.motion {
+            Path::Along(route) => {
+                let (_, last) = route.span_ns();
+                self.start_ns.checked_add_unsigned(self.duration_ns) == Some(last)
+            }
+            Path::Rest | Path::Ellipse => false,
+        };
+        let at_end = ends_with_curve && self.rate.is_due_at(self.duration_ns);
+        self.rate.samples_in(self.duration_ns) + u64::from(at_end)
     }
 }
 
@@ -144,7 +160,7 @@ fn before_ns(rate: Rate, samples: SampleKind) -> i64 {
 /// That there is motion from the first sample to the last.
 pub(super) fn check(scene: &Scene) -> Result<(), Bad> {
     let Path::Along(route) = &scene.motion else { return Ok(()) };
-    let (first, last) = route.knots().span();
+    let (first, last) = route.span_ns();
     let seconds = |ns: i128| ns as f64 / 1e9;
     let begin = i128::from(scene.start_ns) - i128::from(before_ns(scene.rate, scene.samples));
     let early = i128::from(first) - begin;

@@ -46,12 +46,12 @@ fn samples_are_those_of_the_curve_and_tell_of_it() {
     let folder = folder();
     let scene = scene(&folder, "trajectory = 'poses.tum'\nrate_hz = 10\ngravity = 9.8").unwrap();
     let mut simulator = Simulator::new(&scene).unwrap();
-    assert!(
-        matches!(&simulator.take_notes()[..], [Note::Info(text)] if text.contains("knots 0.1 s apart"))
-    );
+    assert!(matches!(&simulator.take_notes()[..], [Note::Info(text), Note::Info(force)]
+            if text.contains("knots 0.1 s apart") && force.contains(" g on average")));
     let mut block = Block::default();
     let truth = simulator.advance_with_truth(&mut block).unwrap();
-    assert_eq!(truth.motions.len(), 100);
+    // The last pose's instant is one of them.
+    assert_eq!(truth.motions.len(), 101);
     let Path::Along(route) = &scene.motion else { panic!() };
     for (k, (motion, rate)) in truth.motions.iter().zip(&block.gyroscope).enumerate() {
         let full = route.full(100_000_000_000 + 100_000_000 * k as i64).unwrap();

@@ -5,12 +5,14 @@
 //! # form: plain
 //! # start_ns: 1403715273212140000
 //! # step_ns: 50000000
+//! # control_points: 2897
+//! # end_ns: 1403715417962140000
 //! c_x [m],c_y [m],c_z [m],c_qw [],c_qx [],c_qy [],c_qz []
 //! 0.878847,2.1833333,…
 //! ```
 //!
-//! Control point i belongs to start_ns + i·step_ns; the curve is known from the second one to the last but one. `form`
-//! says which curve of attitudes runs through them: `plain`, the cumulative product, or `symmetric`. Quaternions rotate
+//! Control point i belongs to start_ns + i·step_ns; the curve is known from the second one to `end_ns`, where the last
+//! pose was. `form` says which curve of attitudes runs through them: `plain`, the cumulative product, or `symmetric`. Quaternions rotate
 //! the body's axes to the world's, Hamilton, w first. Numbers are the shortest decimals that read back to the same
 //! double, so a curve is read as it was written, bit for bit.
 
@@ -45,9 +47,12 @@ pub fn write(path: &Path, fit: &Fit) -> Result<Output, Error> {
     let (name, knots) = (fit.form.name(), &fit.knots);
     let mut text = format!(
         "{MAGIC}{VERSION}: control points of a uniform cubic B-spline, which are no poses of the curve\n\
-         # form: {name}\n# start_ns: {}\n# step_ns: {}\n{COLUMNS}\n",
+         # form: {name}\n# start_ns: {}\n# step_ns: {}\n# control_points: {}\n\
+         # end_ns: {}\n{COLUMNS}\n",
         knots.start_ns(),
         knots.step_ns(),
+        fit.control.len(),
+        fit.span_ns.1,
     )
     .into_bytes();
     let mut digits = zmij::Buffer::new();
@@ -84,7 +89,7 @@ pub(super) fn read(path: &Path) -> Result<Option<Route>, Error> {
     if magic != MAGIC.as_bytes() {
         return Ok(None);
     }
-    let mut rows = Rows { path, lines, line: 0, text: String::new() };
+    let mut rows = Rows { path, lines, line: 0, text: String::new(), is_whole: true };
     rows.next()?;
     if rows.text.split(':').next() != Some(VERSION) {
         return Err(rows.wrong("a curve of another version; this program reads version 1"));
@@ -95,6 +100,10 @@ pub(super) fn read(path: &Path) -> Result<Option<Route>, Error> {
     let start_ns: i64 = start_ns.map_err(|_| rows.wrong("start_ns is a whole number"))?;
     let step_ns = rows.field("step_ns")?.parse();
     let step_ns: u32 = step_ns.map_err(|_| rows.wrong("step_ns is a whole number below 2³²"))?;
+    let count = rows.field("control_points")?.parse();
+    let count: usize = count.map_err(|_| rows.wrong("control_points is a whole number"))?;
+    let end_ns = rows.field("end_ns")?.parse();
+    let end_ns: i64 = end_ns.map_err(|_| rows.wrong("end_ns is a whole number"))?;
     if !rows.next()? || rows.text != COLUMNS {
         return Err(rows.wrong(&format!("the columns are {COLUMNS}")));
     }
@@ -102,14 +111,22 @@ pub(super) fn read(path: &Path) -> Result<Option<Route>, Error> {
     while rows.next()? {
         control.push(rows.pose().ok_or_else(|| rows.wrong("this is no control point"))?);
     }
+    if !rows.is_whole || control.len() != count {
+        return Err(Error::data(format!(
+            "{} is cut off or was changed: it holds {} of {count} control points",
+            path.display(),
+            control.len()
+        )));
+    }
     let of_curve = |_| {
         Error::data(format!(
-            "{}: its control points make no curve: fewer than four, or neighbours half a turn apart",
+            "{}: its control points make no curve: fewer than four, times that do not fit, or neighbours half a turn apart",
             path.display()
         ))
     };
     let knots = Knots::new(start_ns, step_ns, control.len()).map_err(of_curve)?;
-    Route::new(form, knots, &control, Vec::new()).map(Some).map_err(of_curve)
+    let span_ns = (knots.span().0, end_ns);
+    Route::new(form, knots, span_ns, &control, Vec::new()).map(Some).map_err(of_curve)
 }
 
 /// The lines of a file.
@@ -118,6 +135,8 @@ struct Rows<'a> {
     lines: BufReader<File>,
     line: u64,
     text: String,
+    /// The last line had its end.
+    is_whole: bool,
 }
 
 impl Rows<'_> {
@@ -127,6 +146,7 @@ impl Rows<'_> {
         self.text.clear();
         let read = self.lines.by_ref().take(LONGEST_LINE).read_line(&mut self.text);
         let count = read.map_err(|source| Error::io("read", self.path, source))?;
+        self.is_whole = count == 0 && self.is_whole || self.text.ends_with('\n');
         self.text.truncate(self.text.trim_end().len());
         Ok(count > 0)
     }

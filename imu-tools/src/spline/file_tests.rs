@@ -24,6 +24,7 @@ fn a_curve_is_read_as_it_was_written() {
     write(&path, &fit).unwrap().finish().unwrap();
     let route = read(&path).unwrap().unwrap();
     assert_eq!((route.form(), route.knots()), (fit.form, &fit.knots));
+    assert_eq!(route.span_ns(), fit.span_ns);
     let settled: Vec<_> = fit.control.iter().copied().map(settled).collect();
     for ((read, a), b) in route.control().zip(&settled).zip(&fit.control) {
         assert_eq!(read, *a);
@@ -42,18 +43,22 @@ fn what_is_no_curve_is_refused_with_its_line() {
     let changed = |line: usize, to: &str| {
         let mut lines = lines.clone();
         lines[line] = to;
-        lines.join("\n")
+        lines.join("\n") + "\n"
     };
     for (text, words) in [
         (changed(0, "# imu spline 2: x"), "line 1: a curve of another version"),
         (changed(1, "# form: odd"), "line 2: the form of a curve is plain or symmetric"),
         (changed(2, "# start: 5"), "line 3: here a curve has a line `# start_ns: …`"),
         (changed(3, "# step_ns: 5e7"), "line 4: step_ns is a whole number"),
-        (changed(4, "x,y,z"), "line 5: the columns are c_x [m]"),
+        (changed(4, "# control_points: many"), "line 5: control_points is a whole number"),
+        (changed(5, "# end_ns: 5 s"), "line 6: end_ns is a whole number"),
+        (changed(5, "# end_ns: 9"), "times that do not fit"),
+        (changed(6, "x,y,z"), "line 7: the columns are c_x [m]"),
         (changed(9, "1,2,3,1,0,0"), "line 10: this is no control point"),
         (changed(9, "1,2,nan,1,0,0,0"), "line 10: this is no control point"),
         (changed(9, "1,2,3,0.9,0,0,0"), "line 10: this is no control point"),
-        (lines[..8].join("\n"), "make no curve: fewer than four"),
+        (lines[..20].join("\n"), "is cut off or was changed: it holds 13 of 3002"),
+        (text.trim_end().into(), "is cut off or was changed: it holds 3002 of 3002"),
         (lines[..1].join("\n"), "line 2: here a curve has a line `# form"),
     ] {
         std::fs::write(&path, text).unwrap();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use imu_core::trajectory::GRAVITY;
 
-use super::{Choice, Fit, Given, Options, Outline, Route, TimedPose, choices, fit, order};
+use super::{Choice, Fit, Given, Options, Outline, Route, TimedPose, choices, file, fit, order};
 use crate::error::Error;
 use crate::recording::Note;
 
@@ -33,6 +33,12 @@ impl Fitted {
     /// # Errors
     /// When the file cannot be read or no curve comes of it, in one sentence.
     pub fn to(path: &Path, options: &Options) -> Result<Self, Error> {
+        if file::read(path)?.is_some() {
+            return Err(Error::data(format!(
+                "{} is a curve already: sample it with imu spline sample, or give poses",
+                path.display()
+            )));
+        }
         let given = Given::read(path)?;
         let span_s = given.span_s();
         let Given { poses, notes } = given;
@@ -53,8 +59,8 @@ impl Fitted {
     /// # Errors
     /// None, of a fit.
     pub fn outline(&self) -> Result<Outline, Error> {
-        let Fit { form, knots, control, .. } = &self.fit;
-        let route = Route::new(*form, *knots, control, Vec::new());
+        let Fit { form, knots, span_ns, control, .. } = &self.fit;
+        let route = Route::new(*form, *knots, *span_ns, control, Vec::new());
         let route = route.map_err(|error| no_curve(Path::new(&self.path), error))?;
         Ok(Outline::of(&route, &self.poses))
     }

@@ -7,7 +7,7 @@
 //! matrix, in sweeps: what the curve lacks at every pose, log(SᵀR), is solved for, and the control points turn by it.
 //!
 //! The smoothing is never quite nothing: where no pose decides a control point (in a hole), the smoothest way across
-//! is taken.
+//! is taken; of attitudes in short holes only (`bridge`).
 
 use imu_core::nalgebra::Vector3;
 use imu_core::se3::Pose;
@@ -19,9 +19,12 @@ use super::banded::{Banded, Factor};
 
 /// Of the largest entry of the matrix, what smoothing there is at least.
 const LEAST_SMOOTHING: f64 = 1e-10;
-/// Where sweeps end that do not settle, and when they have: rad.
+/// Sweeps, at most.
 const MOST_SWEEPS: usize = 50;
+/// They end when they turn by less than this, rad; …
 const SETTLED: f64 = 1e-13;
+/// … and have not settled where the last one turns by more than this.
+const UNSETTLED: f64 = 1e-6;
 
 /// One matrix for positions, attitudes, and what noise becomes.
 pub(super) struct LeastSquares {
@@ -74,7 +77,7 @@ impl LeastSquares {
         sums
     }
 
-    /// Turns control points of given attitudes towards those of the poses, by sweeps.
+    /// Turns control points of given attitudes towards those of the poses, by sweeps; whether they have settled.
     ///
     /// # Errors
     /// As of [`So3Curve::new`]: where control points would be half a turn apart.
@@ -83,7 +86,8 @@ impl LeastSquares {
         poses: &[TimedPose],
         knots: &Knots<f64>,
         control: &mut [Pose<f64>],
-    ) -> Result<(), Error> {
+    ) -> Result<bool, Error> {
+        let mut largest = f64::INFINITY;
         for _ in 0..MOST_SWEEPS {
             let curve = So3Curve::<_, _, F>::new(knots.start_ns(), knots.step_ns(), &*control)?;
             let lack = poses
@@ -96,7 +100,7 @@ impl LeastSquares {
             let mut turns = self.gathered(lack.into_iter());
             self.roughness(control, &mut turns);
             self.factor.solve(&mut turns);
-            let mut largest = 0.0_f64;
+            largest = 0.0;
             for (point, turn) in control.iter_mut().zip(&turns) {
                 largest = largest.max(turn.abs().max());
                 let turned = so3::product(&point.rotation(), &so3::exp(*turn));
@@ -107,7 +111,8 @@ impl LeastSquares {
             }
         }
         // The last turn may have taken neighbours apart.
-        So3Curve::<f64, _, F>::new(knots.start_ns(), knots.step_ns(), &*control).map(|_| ())
+        So3Curve::<f64, _, F>::new(knots.start_ns(), knots.step_ns(), &*control)
+            .map(|_| largest < UNSETTLED)
     }
 
     /// Takes the slope of the smoothing's cost, Δ³ of the attitudes, off the right-hand side.

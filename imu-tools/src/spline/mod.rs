@@ -25,6 +25,7 @@
 
 pub mod asked;
 mod banded;
+mod bridge;
 mod choices;
 mod distance;
 pub mod file;
@@ -37,6 +38,7 @@ mod poses;
 mod route;
 pub mod sampled;
 mod spacing;
+mod through;
 
 pub use choices::{Choice, choices};
 pub use distance::Distance;
@@ -48,10 +50,9 @@ pub use poses::Given;
 pub use route::Route;
 pub use spacing::Spacing;
 
-use imu_core::nalgebra::Vector3;
 use imu_core::se3::Pose;
 use imu_core::so3;
-use imu_core::spline::{Form, Knots, OneSided, TimeSymmetric, interpolate};
+use imu_core::spline::{Form, Knots, OneSided, TimeSymmetric};
 
 use least_squares::LeastSquares;
 
@@ -120,6 +121,12 @@ pub enum FitError {
     /// Numbers beyond what can be factored.
     #[error("the poses do not decide a curve with knots {0} s apart; take them further apart")]
     Undecided(f64),
+    /// Sweeps that do not settle.
+    #[error(
+        "the attitudes of a curve with knots {0} s apart do not settle; take knots closer to each other, or poses \
+         without a long hole"
+    )]
+    Unsettled(f64),
 }
 
 impl From<imu_core::Error> for FitError {
@@ -138,6 +145,8 @@ pub struct Fit {
     pub knots: Knots<f64>,
     /// The control points.
     pub control: Vec<Pose<f64>>,
+    /// The first pose's instant and the last one's, ns: beyond them the curve is a guess.
+    pub span_ns: (i64, i64),
     /// From the poses to the curve.
     pub error: Distance,
     /// Whether it was made to go through every pose, in place of near.
@@ -169,30 +178,33 @@ fn fit_every<F: Form<f64>>(
     options: &Options,
     step_ns: u32,
 ) -> Result<Fit, FitError> {
-    let equal = poses
-        .windows(2)
-        .all(|two| two[1].stamp_ns.checked_sub(two[0].stamp_ns) == Some(i64::from(step_ns)));
-    let interpolates = equal && options.smoothing_s == 0.0;
+    let interpolates = options.smoothing_s == 0.0 && through::are_near(poses, step_ns);
     let knots = spacing::knots(poses, step_ns)?;
     let undecided = FitError::Undecided(f64::from(step_ns) / 1e9);
     let solver = LeastSquares::new(poses, &knots, options.smoothing_s).ok_or(undecided)?;
     let control = if interpolates {
-        let poses: Vec<_> = poses.iter().map(|pose| pose.pose).collect();
-        let mut control = vec![Pose::identity(); knots.count()];
-        interpolate::<_, F>(&poses, &mut control, &mut vec![Vector3::zeros(); poses.len()])?;
-        control
+        through::control::<F>(poses, &knots)?
     } else {
         let places = solver.vectors(poses.iter().map(|pose| pose.pose.translation()));
         let mut control = begin(poses, &knots)
             .zip(places)
             .map(|(attitude, place)| Pose::new(attitude, place))
             .collect::<Result<Vec<_>, _>>()?;
-        solver.attitudes::<F>(poses, &knots, &mut control)?;
+        let settled = match bridge::bridged(poses, step_ns) {
+            None => solver.attitudes::<F>(poses, &knots, &mut control)?,
+            Some(poses) => LeastSquares::new(&poses, &knots, options.smoothing_s)
+                .ok_or(undecided)?
+                .attitudes::<F>(&poses, &knots, &mut control)?,
+        };
+        if !settled {
+            return Err(FitError::Unsettled(f64::from(step_ns) / 1e9));
+        }
         control
     };
     let error = Distance::of::<F>(poses, &knots, &control)?;
     let jitter = Jitter::of(poses).map(|jitter| jitter.on(&solver, poses, &knots));
-    Ok(Fit { form: options.form, knots, control, error, interpolates, jitter })
+    let span_ns = spacing::ends_ns(poses);
+    Ok(Fit { form: options.form, knots, control, span_ns, error, interpolates, jitter })
 }
 
 /// The attitude of the poses at every control point: between two of them along the shortest turn.

@@ -12,8 +12,10 @@ use super::TimedPose;
 
 /// A reading in which gravity stays as near as this is one to believe in …
 const STEADY: f64 = 0.9;
-/// … if it does so by less than this part of it in the reading that was taken.
-const UNSTEADY: f64 = 0.7;
+/// … if it strays by less than this part of what it strays in the reading that was taken, …
+const STEADIER: f64 = 0.2;
+/// … and does stray there.
+const UNSTEADY: f64 = 0.98;
 
 /// The mean over poses of the world's vertical in body axes: times g, what an accelerometer reads on average.
 #[must_use]
@@ -38,19 +40,21 @@ fn length(v: Vector3<f64>) -> f64 {
 
 /// What to tell of poses that look better in another order.
 pub(super) fn suspicion(poses: &[TimedPose]) -> Option<String> {
-    // What was read as x, y, z, w was w, x, y, z.
+    // What was read as x, y, z, w was w, x, y, z; and the other way round.
     let first =
         |q: Quaternion<f64>| Quaternion::new(q.coords.x, q.coords.y, q.coords.z, q.coords.w);
+    let last = |q: Quaternion<f64>| Quaternion::new(q.coords.z, q.coords.w, q.coords.x, q.coords.y);
     let here = vertical(poses, |q| q);
     let steady = length(here);
     let (other, what) = [
+        (vertical(poses, last), "the scalar of its quaternions came last (qx qy qz qw)"),
         (vertical(poses, first), "the scalar of its quaternions came first (qw qx qy qz)"),
         (vertical(poses, |q| so3::inverse(&q)), "it held the world's poses as the body sees them"),
     ]
     .into_iter()
     .map(|(v, what)| (length(v), what))
     .max_by(|(a, _), (b, _)| a.total_cmp(b))?;
-    (other > STEADY && steady < UNSTEADY * other).then(|| {
+    (other > STEADY && steady < UNSTEADY && 1.0 - other < STEADIER * (1.0 - steady)).then(|| {
         let [x, y, z] = <[f64; 3]>::from(here);
         format!(
             "are the columns in the right order? As they are read, gravity wanders about the body: an accelerometer \

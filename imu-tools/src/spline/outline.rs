@@ -33,7 +33,7 @@ impl Outline {
             let largest = distances.fold((0.0, 0.0), |(a, b), (m, rad)| (m.max(a), rad.max(b)));
             (stretch.first().map_or(0.0, |pose| at(pose.stamp_ns)), largest.0, largest.1)
         });
-        let (first, last) = route.knots().span();
+        let (first, last) = route.span_ns();
         let length = i128::from(last) - i128::from(first);
         let curve = (0..=MOST).filter_map(|k| {
             let t_ns = i128::from(first) + length * i128::from(k) / i128::from(MOST);

@@ -9,7 +9,7 @@ use imu_core::spline::{Full, Knot, Knots, SplitSpline, SymmetricSplitSpline, cac
 use imu_core::trajectory::{AlongSpline, Motion, Trajectory};
 
 use super::fitted::no_curve;
-use super::{Fit, FormName, Given, Options, file, fit};
+use super::{Fit, FormName, Given, Options, file, fit, mean_vertical};
 use crate::error::Error;
 use crate::recording::Note;
 
@@ -18,27 +18,35 @@ use crate::recording::Note;
 pub struct Route {
     form: FormName,
     knots: Knots<f64>,
+    span_ns: (i64, i64),
     cached: Vec<Knot<f64>>,
     notes: Vec<Note>,
 }
 
 impl Route {
-    /// Of control poses: one for every knot.
+    /// Of control poses, one for every knot; the poses that they come from begin and end at the instants `span_ns`, and
+    /// so does the route.
     ///
     /// # Errors
-    /// As of [`cache`].
+    /// [`OutOfRange`](CoreError::OutOfRange) where there are not as many control poses as knots, or where the span is
+    /// not within that of the knots; as of [`cache`].
     pub fn new(
         form: FormName,
         knots: Knots<f64>,
+        span_ns: (i64, i64),
         control: &[Pose<f64>],
         notes: Vec<Note>,
     ) -> Result<Self, CoreError> {
         if knots.count() != control.len() {
             return Err(CoreError::OutOfRange("knots"));
         }
+        let ((first, last), (begin, end)) = (knots.span(), span_ns);
+        if !(first <= begin && begin <= end && end <= last) {
+            return Err(CoreError::OutOfRange("span_ns"));
+        }
         let mut cached = vec![Knot::default(); control.len()];
         cache(control, &mut cached)?;
-        Ok(Self { form, knots, cached, notes })
+        Ok(Self { form, knots, span_ns, cached, notes })
     }
 
     /// The curve in a file of `imu spline fit`, as it stands there, or one that is fitted to the poses in it.
@@ -47,21 +55,39 @@ impl Route {
     /// When the file cannot be read or no curve comes of it, in one sentence.
     pub fn open(path: &Path, options: &Options) -> Result<Self, Error> {
         if let Some(route) = file::read(path)? {
+            if *options != Options::default() {
+                return Err(Error::usage(format!(
+                    "{} is a curve already, and stays as it is: leave form, spacing, within and smoothing out, or \
+                     give its poses",
+                    path.display()
+                )));
+            }
             return Ok(route);
         }
         let given = Given::read(path)?;
         let fit = fit(&given.poses, options).map_err(|error| no_curve(path, error))?;
         let mut notes = given.notes;
         notes.push(Note::Info(told(&fit, given.poses.len())));
+        let [x, y, z] = mean_vertical(&given.poses);
+        notes.push(Note::Info(format!(
+            "an accelerometer along them reads {x:.2}, {y:.2}, {z:.2} g on average"
+        )));
         // As a file of it would be read.
         let control: Vec<_> = fit.control.iter().copied().map(file::settled).collect();
-        Self::new(fit.form, fit.knots, &control, notes).map_err(|error| no_curve(path, error))
+        Self::new(fit.form, fit.knots, fit.span_ns, &control, notes)
+            .map_err(|error| no_curve(path, error))
     }
 
     /// Which curve it is.
     #[must_use]
     pub fn form(&self) -> FormName {
         self.form
+    }
+
+    /// The instants of the first and the last pose that it was fitted to, ns.
+    #[must_use]
+    pub fn span_ns(&self) -> (i64, i64) {
+        self.span_ns
     }
 
     /// When its control points are.

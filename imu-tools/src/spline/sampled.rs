@@ -59,7 +59,7 @@ pub fn write(route: &Route, rate: Rate, path: &Path, table: Table) -> Result<u64
         Table::Tum => poses::TUM_HEADER.into(),
         Table::Csv => format!("{COLUMNS}\n").into(),
     };
-    let (begin, end) = route.knots().span();
+    let (begin, end) = route.span_ns();
     let mut count = 0;
     for offset_ns in rate.offsets() {
         let t_ns = begin.saturating_add(offset_ns);

@@ -2,17 +2,18 @@
 
 use imu_core::spline::{Form, Knots};
 
-use super::{Fit, FitError, Options, TimedPose, fit_every};
+use super::{Fit, FitError, Options, TimedPose, fit_every, through};
 
 /// Candidates are this many to an octave, from all of the record down to the median time between poses.
 const TO_AN_OCTAVE: i32 = 4;
-/// More control points than this are refused: 1.4 GB.
-const MOST_KNOTS: i128 = 20_000_000;
+/// More control points than this are refused: a fit of so many takes 1.7 GB and a minute.
+const MOST_KNOTS: i128 = 5_000_000;
 
 /// How far apart control points are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spacing {
-    /// As far as the poses: the median time between them.
+    /// As far as the poses: a knot each where their stamps are equally spaced but for rounding, else the median time
+    /// between them.
     AsPoses,
     /// This far, ns. Where that is no part of the whole, poses at the end decide little of the last interval.
     Every(u32),
@@ -31,6 +32,12 @@ pub enum SpacingError {
     /// Longer than all of the poses.
     #[error("knots {0} s apart are further apart than the first pose is from the last ({1} s)")]
     TooLong(f64, f64),
+    /// Poses further apart than knots can be.
+    #[error("the poses are {0} s apart, and knots can be 4.29 s apart at most: give more poses")]
+    TooRare(f64),
+    /// Beyond the range of time.
+    #[error("the first stamp, {0} ns, has no time before it; take an epoch nearer to the poses")]
+    Epoch(i64),
     /// Too many to hold.
     #[error(
         "knots {0} s apart would be {1} control points for these poses; take them further apart"
@@ -50,11 +57,11 @@ pub(super) fn fitted<F: Form<f64>>(
     options: &Options,
 ) -> Result<Fit, FitError> {
     let (position_m, rotation_rad) = match options.spacing {
-        Spacing::AsPoses => return fit_every::<F>(poses, options, median_step_ns(poses)),
+        Spacing::AsPoses => return fit_every::<F>(poses, options, step_of_poses_ns(poses)?),
         Spacing::Every(step_ns) => return fit_every::<F>(poses, options, step_ns),
         Spacing::Within { position_m, rotation_rad } => (position_m, rotation_rad),
     };
-    let least = median_step_ns(poses);
+    let least = step_of_poses_ns(poses)?;
     let span = span_ns(poses);
     let octaves = (span as f64 / f64::from(least)).log2();
     for k in (1..=(octaves * f64::from(TO_AN_OCTAVE)) as i32).rev() {
@@ -65,7 +72,13 @@ pub(super) fn fitted<F: Form<f64>>(
         // Knots so far apart that neighbours turn by half a turn are just too far apart.
         match fit_every::<F>(poses, options, step) {
             Ok(fit) if is_within(&fit, position_m, rotation_rad) => return Ok(fit),
-            Ok(_) | Err(FitError::Turn | FitError::Undecided(_) | FitError::Spacing(_)) => {}
+            Ok(_)
+            | Err(
+                FitError::Turn
+                | FitError::Undecided(_)
+                | FitError::Unsettled(_)
+                | FitError::Spacing(_),
+            ) => {}
             Err(other) => return Err(other),
         }
     }
@@ -86,26 +99,36 @@ fn is_within(fit: &Fit, position_m: f64, rotation_rad: f64) -> bool {
     fit.error.largest_position_m <= position_m && fit.error.largest_rotation_rad <= rotation_rad
 }
 
-/// The median time between poses, ns; at most what a step can be.
-fn median_step_ns(poses: &[TimedPose]) -> u32 {
+/// The time between poses, ns: all of the record in equal parts where each pose is near the end of one, else the
+/// median.
+fn step_of_poses_ns(poses: &[TimedPose]) -> Result<u32, SpacingError> {
+    let parts = (poses.len() as u64).saturating_sub(1).max(1);
+    let equal = u32::try_from(span_ns(poses).div_ceil(parts)).ok();
+    if let Some(step_ns) = equal.filter(|step_ns| through::are_near(poses, *step_ns)) {
+        return Ok(step_ns);
+    }
     let mut steps: Vec<_> =
         poses.windows(2).map(|two| two[1].stamp_ns.abs_diff(two[0].stamp_ns)).collect();
     let middle = steps.len() / 2;
     let (_, median, _) = steps.select_nth_unstable(middle);
-    u32::try_from(*median).unwrap_or(u32::MAX)
+    u32::try_from(*median).map_err(|_| SpacingError::TooRare(*median as f64 / 1e9))
 }
 
 fn span_ns(poses: &[TimedPose]) -> u64 {
-    match (poses.first(), poses.last()) {
-        (Some(first), Some(last)) => last.stamp_ns.abs_diff(first.stamp_ns),
-        _ => 0,
-    }
+    let (first, last) = ends_ns(poses);
+    last.abs_diff(first)
+}
+
+/// The instants of the first pose and of the last, ns.
+pub(super) fn ends_ns(poses: &[TimedPose]) -> (i64, i64) {
+    let at = |pose: Option<&TimedPose>| pose.map_or(0, |pose| pose.stamp_ns);
+    (at(poses.first()), at(poses.last()))
 }
 
 /// Knots this far apart whose curve spans the poses, from the first on.
 pub(super) fn knots(poses: &[TimedPose], step_ns: u32) -> Result<Knots<f64>, FitError> {
     let (span, seconds) = (span_ns(poses), f64::from(step_ns) / 1e9);
-    let first = poses.first().map_or(0, |pose| pose.stamp_ns);
+    let (first, _) = ends_ns(poses);
     let too_long = SpacingError::TooLong(seconds, span as f64 / 1e9);
     if u64::from(step_ns) > span || step_ns == 0 {
         return Err(too_long.into());
@@ -114,6 +137,7 @@ pub(super) fn knots(poses: &[TimedPose], step_ns: u32) -> Result<Knots<f64>, Fit
     if count > MOST_KNOTS {
         return Err(SpacingError::TooMany(seconds, count).into());
     }
-    let start = first.checked_sub(i64::from(step_ns)).ok_or(too_long)?;
-    Knots::new(start, step_ns, count as usize).map_err(|_| too_long.into())
+    let beyond = SpacingError::Epoch(first);
+    let start = first.checked_sub(i64::from(step_ns)).ok_or(beyond)?;
+    Knots::new(start, step_ns, count as usize).map_err(|_| beyond.into())
 }

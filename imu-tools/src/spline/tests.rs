@@ -1,3 +1,4 @@
+use imu_core::nalgebra::Vector3;
 use imu_core::noise::{Normal as _, Xoshiro256PlusPlus};
 use imu_core::spline::{SplitSpline, SymmetricSplitSpline};
 use imu_core::trajectory::{Ellipse, Motion, Trajectory as _};
@@ -147,6 +148,67 @@ fn a_hole_is_crossed_smoothly() {
     assert!((there.translation() - truth.translation()).abs().max() < 0.05);
 }
 
+/// The largest error of acceleration and of ω in the first and the last two intervals.
+fn off_at_the_ends(fit: &Fit) -> (f64, f64) {
+    let curve =
+        SymmetricSplitSpline::new(fit.knots.start_ns(), fit.knots.step_ns(), &fit.control).unwrap();
+    let (first, last) = fit.span_ns;
+    let step = i64::from(fit.knots.step_ns()) / 10;
+    let instants = (0..20).flat_map(|k| [first + k * step, last - k * step]);
+    instants.fold((0.0, 0.0), |(a, w), t_ns| {
+        let (full, truth): (_, Motion<f64>) =
+            (curve.full(t_ns).unwrap(), Ellipse::default().at(t_ns));
+        let felt = so3::rotate(&truth.attitude_wb, &truth.specific_force);
+        let off = full.acceleration_w - felt + Vector3::new(0.0, 0.0, 9.81);
+        let turn = full.angular_rate - truth.angular_rate;
+        (off.abs().max().max(a), turn.abs().max().max(w))
+    })
+}
+
+#[test]
+fn rounded_stamps_cost_nothing_at_the_ends() {
+    let exact: Vec<_> = (0..600_i64).map(|k| on_the_ellipse(k * 1_000_000_000 / 30)).collect();
+    let exact = fit(&exact, &options(FormName::Symmetric, Spacing::AsPoses)).unwrap();
+    for rounding in [1_000, 1_000_000] {
+        let stamps = (0..600_i64).map(|k| (k * 1_000_000_000 / 30 + rounding / 2) / rounding);
+        let poses: Vec<_> = stamps.map(|k| on_the_ellipse(k * rounding)).collect();
+        let rounded = fit(&poses, &options(FormName::Symmetric, Spacing::AsPoses)).unwrap();
+        assert!(rounded.interpolates && rounded.control.len() == 602);
+        assert!(rounded.error.largest_position_m < 1e-12, "{:?}", rounded.error);
+        assert!(rounded.error.largest_rotation_rad < 1e-13, "{:?}", rounded.error);
+        assert_eq!(rounded.span_ns, (poses[0].stamp_ns, poses[599].stamp_ns));
+        let ((a, w), (exact_a, exact_w)) = (off_at_the_ends(&rounded), off_at_the_ends(&exact));
+        // Half a millisecond of 33 moves every weight by 4 % of what it is.
+        assert!(a < 1.5 * exact_a && w < 1.5 * exact_w, "{rounding}: {a} {exact_a}, {w} {exact_w}");
+    }
+}
+
+#[test]
+fn attitudes_go_the_short_way_across_long_holes() {
+    for hole in [100, 400, 2000] {
+        let mut poses = every(50_000_000, 3000);
+        let ends = (poses[599], poses[600 + hole]);
+        poses.drain(600..600 + hole);
+        let turn = so3::product(&so3::inverse(&ends.0.pose.rotation()), &ends.1.pose.rotation());
+        let turn: [f64; 3] = so3::log(&turn).into();
+        let even = turn[0].hypot(turn[1]).hypot(turn[2]) / (0.05 * (hole as f64 + 1.0));
+        for form in [FormName::Plain, FormName::Symmetric] {
+            let fit = fit(&poses, &options(form, Spacing::AsPoses)).unwrap();
+            assert!(fit.error.largest_rotation_rad < 1e-3, "{:?}", fit.error);
+            let curve = SymmetricSplitSpline::new(fit.knots.start_ns(), 50_000_000, &fit.control);
+            let curve = curve.unwrap();
+            let (begin, end) = (ends.0.stamp_ns, ends.1.stamp_ns);
+            for t_ns in (begin..=end).step_by(10_000_000) {
+                let rate = curve.full(t_ns).unwrap().angular_rate;
+                // At the edges it still turns as the ellipse does, by less than 1.5 rad/s in any axis.
+                let calm = (t_ns - begin).min(end - t_ns) > 1_000_000_000;
+                let most = if calm { 1.1 * even + 0.05 } else { 4.0 };
+                assert!(rate.abs().max() < most, "{hole} {form:?} {t_ns}: {rate:?} {even}");
+            }
+        }
+    }
+}
+
 #[test]
 fn what_makes_no_curve_is_refused() {
     let poses = every(50_000_000, 20);
@@ -160,6 +222,12 @@ fn what_makes_no_curve_is_refused() {
     assert!(refused(&poses, Spacing::Every(2_000_000_000)).contains("further apart"));
     assert!(refused(&poses, Spacing::Every(0)).contains("further apart"));
     assert!(refused(&poses, Spacing::Every(1)).contains("control points"));
+    assert!(refused(&every(6_000_000_000, 20), Spacing::AsPoses).contains("4.29 s apart at most"));
+    let early: Vec<_> = poses
+        .iter()
+        .map(|pose| TimedPose { stamp_ns: i64::MIN + pose.stamp_ns, pose: pose.pose })
+        .collect();
+    assert!(refused(&early, Spacing::AsPoses).contains("take an epoch nearer"));
     let none = Spacing::Within { position_m: 0.0, rotation_rad: 0.0 };
     assert!(refused(&jittered(&poses, 1.0, 0.1), none).contains("no curve stays"));
     let mut jumps = poses.clone();
