@@ -8,6 +8,7 @@ pub mod command;
 pub mod databases;
 pub mod disturbed;
 pub mod flights;
+pub mod frames;
 pub mod mcaps;
 pub mod monte_carlo;
 pub mod recordings;

@@ -1,3 +1,4 @@
 //! Streams: `imu live` and what it is made of.
 
+mod protocols;
 mod session;
