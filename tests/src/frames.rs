@@ -136,7 +136,7 @@ impl Outcome {
         const AHEAD: usize = 64;
         self.whole = sent.len() as u64;
         let mut next = 0;
-        let mut miss = |outcome: &mut Self, missed: &[(Message, bool)]| {
+        let miss = |outcome: &mut Self, missed: &[(Message, bool)]| {
             outcome.lost += missed.len() as u64;
             outcome.second_lost +=
                 missed.iter().filter(|(_, near_damage)| !near_damage).count() as u64;

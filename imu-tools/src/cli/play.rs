@@ -28,8 +28,12 @@ pub(super) struct Played {
 }
 
 impl Targets<'_> {
-    /// That no file is to be written twice, nor over what is read, which is called so.
-    pub(super) fn check(&self, read: Option<(&Path, &str)>) -> Result<(), Error> {
+    /// That no file is to be written twice, nor over what is read, each of which is called so.
+    pub(super) fn check<'r>(
+        &self,
+        read: impl IntoIterator<Item = (&'r Path, &'r str)>,
+    ) -> Result<(), Error> {
+        let read: Vec<_> = read.into_iter().collect();
         let targets =
             [(Some(self.output), "recording"), (self.truth, "truth"), (self.terms, "terms")];
         let targets: Vec<(&Path, &str)> =
@@ -42,9 +46,10 @@ impl Targets<'_> {
                     path.display()
                 )));
             }
-            if let Some((_, what)) = read.filter(|(file, _)| same_target(path, file)) {
+            let is_read = |(file, _): &&(&Path, &str)| same_target(path, file) || holds(path, file);
+            if let Some((_, what)) = read.iter().find(is_read) {
                 return Err(Error::usage(format!(
-                    "{} is {what}: name another file to write",
+                    "{} is {what}, or holds it: name another file to write",
                     path.display()
                 )));
             }
@@ -88,6 +93,15 @@ impl Targets<'_> {
         let sink = recording::create_with(self.output, format, contents)?;
         Ok((sink, unsaid(format, contents)))
     }
+}
+
+/// Whether a file is in what a folder of EuRoC's layout, to be written, is made of.
+fn holds(folder: &Path, file: &Path) -> bool {
+    let is_inner = folder.file_name().is_some_and(|name| name == "mav0");
+    let inside = if is_inner { folder.to_owned() } else { folder.join("mav0") };
+    inside
+        .canonicalize()
+        .is_ok_and(|inside| file.canonicalize().is_ok_and(|file| file.starts_with(inside)))
 }
 
 /// Says remarks, and warnings as such.

@@ -97,7 +97,13 @@ impl Simulate {
             speed: self.speed,
         };
         let is_file = Preset::from_name(&self.scene).is_none();
-        targets.check(is_file.then_some((Path::new(&self.scene), "the scene itself")))?;
+        let route = match &scene.motion {
+            Motion::Along(route) => route.file(),
+            Motion::Rest | Motion::Ellipse => None,
+        };
+        let scene_file = is_file.then_some((Path::new(&self.scene), "the scene itself"));
+        let poses = route.map(|poses| (poses, "the trajectory of the scene"));
+        targets.check(scene_file.into_iter().chain(poses))?;
         let played = targets.play(&scene)?;
         super::say(&format!("imu: wrote {}", self.summary(&scene, &played)));
         Ok(())

@@ -219,6 +219,12 @@ impl Fit {
                 folder.display()
             )));
         }
+        if let Some(twice) = pictures.clone().find(|picture| same_target(picture, &self.output)) {
+            return Err(Error::usage(format!(
+                "the curve and a picture cannot both go to {}: name another file",
+                twice.display()
+            )));
+        }
         pictures
             .chain([self.output.clone()])
             .try_for_each(|target| refuse_overwriting(&self.poses, &target))
@@ -249,7 +255,7 @@ impl Imu {
             speed: 1.0,
         };
         targets.check(
-            (self.file != Path::new("-")).then_some((&self.file, "the trajectory itself")),
+            (self.file != Path::new("-")).then_some((self.file.as_path(), "the trajectory itself")),
         )?;
         let route = Arc::new(self.how.open(&self.file)?);
         let mut scene = Scene { gravity: self.gravity, ..Scene::along(route, rate, self.samples) };

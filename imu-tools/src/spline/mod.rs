@@ -185,10 +185,12 @@ fn fit_every<F: Form<f64>>(
     let control = if interpolates {
         through::control::<F>(poses, &knots)?
     } else {
-        let places = solver.vectors(poses.iter().map(|pose| pose.pose.translation()));
+        // From the first pose: the digits of a place far from home would be lost where little decides.
+        let home = poses[0].pose.translation();
+        let places = solver.vectors(poses.iter().map(|pose| pose.pose.translation() - home));
         let mut control = begin(poses, &knots)
             .zip(places)
-            .map(|(attitude, place)| Pose::new(attitude, place))
+            .map(|(attitude, place)| Pose::new(attitude, place + home))
             .collect::<Result<Vec<_>, _>>()?;
         let settled = match bridge::bridged(poses, step_ns) {
             None => solver.attitudes::<F>(poses, &knots, &mut control)?,

@@ -1,6 +1,6 @@
 //! A curve of poses with its logarithms cached: what an IMU can follow.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use imu_core::Error as CoreError;
 use imu_core::se3::Pose;
@@ -20,6 +20,7 @@ pub struct Route {
     knots: Knots<f64>,
     span_ns: (i64, i64),
     cached: Vec<Knot<f64>>,
+    file: Option<PathBuf>,
     notes: Vec<Note>,
 }
 
@@ -46,7 +47,7 @@ impl Route {
         }
         let mut cached = vec![Knot::default(); control.len()];
         cache(control, &mut cached)?;
-        Ok(Self { form, knots, span_ns, cached, notes })
+        Ok(Self { form, knots, span_ns, cached, file: None, notes })
     }
 
     /// The curve in a file of `imu spline fit`, as it stands there, or one that is fitted to the poses in it.
@@ -62,7 +63,7 @@ impl Route {
                     path.display()
                 )));
             }
-            return Ok(route);
+            return Ok(Self { file: Some(path.to_owned()), ..route });
         }
         let given = Given::read(path)?;
         let fit = fit(&given.poses, options).map_err(|error| no_curve(path, error))?;
@@ -74,7 +75,9 @@ impl Route {
         )));
         // As a file of it would be read.
         let control: Vec<_> = fit.control.iter().copied().map(file::settled).collect();
+        let file = Some(path.to_owned());
         Self::new(fit.form, fit.knots, fit.span_ns, &control, notes)
+            .map(|route| Self { file, ..route })
             .map_err(|error| no_curve(path, error))
     }
 
@@ -99,6 +102,12 @@ impl Route {
     /// Its control points.
     pub fn control(&self) -> impl Iterator<Item = Pose<f64>> {
         self.cached.iter().map(Knot::pose)
+    }
+
+    /// The file that it was read from.
+    #[must_use]
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
     }
 
     /// What there is to tell of its poses and of the fit.

@@ -298,6 +298,23 @@ fn a_scene_is_never_written_over() {
         assert!(said.err.contains("is the scene itself"), "{}", said.err);
     }
     assert_eq!(fs::read_to_string(&scene).expect("read"), "duration = \"1s\"\n");
+    // Nor are the poses that it follows.
+    let inside = folder.path().join("all/mav0/imu0/data.csv");
+    fs::create_dir_all(inside.parent().expect("a folder")).expect("made");
+    let poses: String = (0..9).map(|k| format!("{k} {k} 0 0 0 0 0 1\n")).collect();
+    for poses_file in [csv.as_str(), inside.to_str().expect("text")] {
+        fs::write(poses_file, &poses).expect("written");
+        fs::write(&scene, format!("trajectory = {poses_file:?}\n")).expect("written");
+        let (other, all) = (at(&folder, "b.csv"), at(&folder, "all/"));
+        let truth = [&["-o", &other, "--truth", poses_file][..], &["-o", poses_file]];
+        let folders = poses_file.contains("mav0").then_some(&["-o", &all][..]);
+        for arguments in truth.into_iter().chain(folders) {
+            let said = run(&[&["simulate", &scene][..], arguments].concat());
+            assert_eq!(said.code, 2, "{arguments:?}: {}", said.err);
+            assert!(said.err.contains("is the trajectory of the scene"), "{}", said.err);
+            assert_eq!(fs::read_to_string(poses_file).expect("read"), poses);
+        }
+    }
 }
 
 #[test]

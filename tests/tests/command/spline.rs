@@ -179,6 +179,7 @@ fn what_cannot_be_is_refused_in_one_sentence() {
         ("spline fit @swapped.tum -o @x", 1, "position and rotation are swapped"),
         ("spline fit @no.tum -o @x", 1, "there is no such file"),
         ("spline fit @poses.tum -o @poses.tum", 2, "is read, and would be written over"),
+        ("spline fit @poses.tum -o @p/curve.svg --plots @p", 2, "cannot both go to"),
         ("spline fit @poses.tum -o - --json", 2, "cannot both go to the standard output"),
         ("spline fit @poses.tum -o @x --plots -", 2, "plots go into a folder"),
         ("spline fit @poses.tum -o @x --form odd", 2, "plain or symmetric"),
