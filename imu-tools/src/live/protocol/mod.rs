@@ -1,6 +1,6 @@
 //! What sensors send, one protocol a file: bytes to [`Message`]s, and back for tests and simulation.
 //!
-//! Each protocol is *check → view → sample* on frames that [`framer`] finds: `check` says whether a
+//! Each protocol is *check → view → sample* on frames that `framer` finds: `check` says whether a
 //! whole frame with a right checksum begins here, a `View` names its fields in place, and a sample of
 //! it is a [`Message`] in SI units. What is read of which protocol, and what it was tested against,
 //! stands in docs/live-protocols.md.
