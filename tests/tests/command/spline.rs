@@ -58,7 +58,7 @@ fn a_fit_says_how_far_it_is_and_what_else_there_is() {
     let said = flight.fine("spline fit @poses.tum -o @a.spline --spacing 0.05 --plots @plots");
     for words in [
         "401 poses in 20 s, 20.00 a second",
-        "curve: plain, 403 control points 0.05000 s apart, by least squares",
+        "curve: plain, 403 control points 0.05000 s apart, through every pose",
         "From poses to the curve",
         "The poses jitter by",
         "m/s² of acceleration",
