@@ -24,7 +24,7 @@ const MOST_SWEEPS: usize = 50;
 /// They end when they turn by less than this, rad; …
 const SETTLED: f64 = 1e-13;
 /// … and have not settled where the last one turns by more than this.
-const UNSETTLED: f64 = 1e-6;
+const UNSETTLED: f64 = 1e-2;
 
 /// One matrix for positions, attitudes, and what noise becomes.
 pub(super) struct LeastSquares {

@@ -91,7 +91,7 @@ fn a_simulated_sensor_sends_the_scene() {
     let mut source = recording::open(&file, &ReadOptions::default()).unwrap();
     let mut block = Block::default();
     assert!(source.next_block(&mut block).unwrap());
-    assert_eq!(block.gyroscope.len(), 1001);
+    assert_eq!(block.gyroscope.len(), 1000);
     std::thread::scope(|scope| {
         for protocol in Protocol::ALL {
             let (block, link) = (&block, folder.path().join(protocol.name()));
