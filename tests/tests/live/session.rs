@@ -169,6 +169,9 @@ fn a_signal_leaves_a_checkpoint_and_whole_recordings() {
     let folder = tempfile::tempdir().unwrap();
     let path = recording(folder.path(), 15);
     for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
+        if signal == "HUP" && hang_ups_are_ignored() {
+            continue;
+        }
         let checkpoint = folder.path().join(format!("c-{signal}"));
         let record = folder.path().join(format!("r-{signal}.bag"));
         let more = ["--speed", "60", "--record", text(&record), "--checkpoint-every", "1h"];
@@ -189,6 +192,14 @@ fn a_signal_leaves_a_checkpoint_and_whole_recordings() {
         let info = run(&["info", text(&record)]);
         assert!(info.code == 0 && !info.err.contains("cut off"), "{}", info.err);
     }
+}
+
+/// Under `nohup` programs start with hang-ups ignored, and so they stay.
+#[cfg(unix)]
+fn hang_ups_are_ignored() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    ignored.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).is_ok_and(|mask| mask & 1 == 1))
 }
 
 #[test]
