@@ -60,17 +60,19 @@ impl Jitter {
         Some(Self { position_m: deviation(positions)?, rotation_rad: deviation(rotations)? })
     }
 
-    /// What a fit makes of it: noise of this size is fitted in place of the poses.
+    /// What a fit makes of it: noise of this size is fitted in place of the poses. None where it decides no curve.
     pub(super) fn on(
         self,
         solver: &LeastSquares,
         poses: &[TimedPose],
         knots: &Knots<f64>,
-    ) -> JitterOfCurve {
+    ) -> Option<JitterOfCurve> {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
-        let noise =
-            poses.iter().map(|_| Vector3::from([(); 3].map(|()| f64::standard_normal(&mut rng))));
-        let control = solver.vectors(noise);
+        let noise: Vec<_> = poses
+            .iter()
+            .map(|_| Vector3::from([(); 3].map(|()| f64::standard_normal(&mut rng))))
+            .collect();
+        let control = solver.vectors(&noise)?;
         let (mut acceleration, mut velocity, mut count) = (0.0, 0.0, 0.0);
         let ends = if control.len() > 10 * AT_ENDS { AT_ENDS } else { 0 };
         for four in control[ends..control.len() - ends].windows(4) {
@@ -87,11 +89,11 @@ impl Jitter {
             }
         }
         let rate = knots.rate();
-        JitterOfCurve {
+        Some(JitterOfCurve {
             poses: self,
             acceleration: self.position_m * (acceleration / count).sqrt() * rate * rate,
             angular_rate: self.rotation_rad * (velocity / count).sqrt() * rate,
-        }
+        })
     }
 }
 

@@ -4,10 +4,11 @@
 //! Σ|Σⱼ Nⱼ(t)cⱼ − p|² + (τ⁶/Δt) ∫|p⃛|² dt: a smoothing spline of third order (Reinsch (1967), "Smoothing by spline
 //! functions"), which passes half of what moves with 1/(2πτ) Hz, and of what moves twice as fast a 65th. Δt is the mean
 //! time between poses. The integral is Σ|Δ³c|²/h⁵ exactly, so the matrix has seven diagonals. Attitudes are of the same
-//! matrix, in sweeps: what the curve lacks at every pose, log(SᵀR), is solved for, and the control points turn by it.
+//! matrix, in sweeps: what the curve lacks at every pose, log(RSᵀ), is solved for, and the control points turn by it. All
+//! turns are in the world's axes: in each body's own, sweeps diverge where neighbours are a radian apart.
 //!
 //! The smoothing is never quite nothing: where no pose decides a control point (in a hole), the smoothest way across
-//! is taken; of attitudes in short holes only (`bridge`).
+//! is taken, if it is a short one (`bridge`).
 
 use imu_core::nalgebra::Vector3;
 use imu_core::se3::Pose;
@@ -24,7 +25,9 @@ const MOST_SWEEPS: usize = 50;
 /// They end when they turn by less than this, rad; …
 const SETTLED: f64 = 1e-13;
 /// … and have not settled where the last one turns by more than this.
-const UNSETTLED: f64 = 1e-2;
+const UNSETTLED: f64 = 1e-6;
+/// Positions are decided if the last correction is at most this part of them.
+const DECIDED: f64 = 1e-9;
 
 /// One matrix for positions, attitudes, and what noise becomes.
 pub(super) struct LeastSquares {
@@ -60,11 +63,35 @@ impl LeastSquares {
         Some(Self { rows, factor: matrix.factor()?, smoothing, count })
     }
 
-    /// Control points of values at the poses.
-    pub(super) fn vectors(&self, values: impl Iterator<Item = Vector3<f64>>) -> Vec<Vector3<f64>> {
-        let mut control = self.gathered(values);
-        self.factor.solve(&mut control);
-        control
+    /// Control points of values at the poses; `None` where so much is smoothed that digits do not suffice.
+    ///
+    /// What they lack is solved for once more until it does not shrink: the residuals are those of the values
+    /// themselves, so the square of the condition number does not tell (Björck (1987), "Stability analysis of the method
+    /// of seminormal equations").
+    pub(super) fn vectors(&self, values: &[Vector3<f64>]) -> Option<Vec<Vector3<f64>>> {
+        let mut control = vec![Vector3::zeros(); self.count];
+        let mut before = f64::INFINITY;
+        for _ in 0..MOST_SWEEPS {
+            let lack = self.rows.iter().zip(values).map(|(row, value)| {
+                let acting = control[row.first..].iter().zip(row.weights);
+                acting.fold(*value, |lack, (point, weight)| lack - point * weight)
+            });
+            let mut more = self.gathered(lack);
+            let steps: Vec<_> = control.windows(2).map(|two| two[1] - two[0]).collect();
+            self.smooth(&steps, &mut more);
+            self.factor.solve(&mut more);
+            let largest = more.iter().fold(0.0_f64, |largest, v| largest.max(v.abs().max()));
+            // Down to rounding, which does not fall any more.
+            if largest >= 0.5 * before {
+                break;
+            }
+            before = largest;
+            for (point, more) in control.iter_mut().zip(&more) {
+                *point += more;
+            }
+        }
+        let scale = control.iter().fold(0.0_f64, |largest, v| largest.max(v.abs().max()));
+        (before <= DECIDED * scale).then_some(control)
     }
 
     fn gathered(&self, values: impl Iterator<Item = Vector3<f64>>) -> Vec<Vector3<f64>> {
@@ -94,7 +121,7 @@ impl LeastSquares {
                 .iter()
                 .map(|TimedPose { stamp_ns, pose }| {
                     let there = curve.attitude(*stamp_ns)?;
-                    Ok(so3::log(&so3::product(&so3::inverse(&there), &pose.rotation())))
+                    Ok(so3::log(&so3::product(&pose.rotation(), &so3::inverse(&there))))
                 })
                 .collect::<Result<Vec<_>, Error>>()?;
             let mut turns = self.gathered(lack.into_iter());
@@ -103,7 +130,7 @@ impl LeastSquares {
             largest = 0.0;
             for (point, turn) in control.iter_mut().zip(&turns) {
                 largest = largest.max(turn.abs().max());
-                let turned = so3::product(&point.rotation(), &so3::exp(*turn));
+                let turned = so3::product(&so3::exp(*turn), &point.rotation());
                 *point = Pose::new(turned, point.translation())?;
             }
             if largest < SETTLED {
@@ -115,14 +142,19 @@ impl LeastSquares {
             .map(|_| largest < UNSETTLED)
     }
 
-    /// Takes the slope of the smoothing's cost, Δ³ of the attitudes, off the right-hand side.
+    /// Takes the slope of the smoothing's cost off the right-hand side: Δ³ of attitudes.
     fn roughness(&self, control: &[Pose<f64>], sums: &mut [Vector3<f64>]) {
         let steps: Vec<_> = control
             .windows(2)
             .map(|two| {
-                so3::log(&so3::product(&so3::inverse(&two[0].rotation()), &two[1].rotation()))
+                so3::log(&so3::product(&two[1].rotation(), &so3::inverse(&two[0].rotation())))
             })
             .collect();
+        self.smooth(&steps, sums);
+    }
+
+    /// The same of anything whose steps from one control point to the next are these.
+    fn smooth(&self, steps: &[Vector3<f64>], sums: &mut [Vector3<f64>]) {
         for (first, three) in steps.windows(3).enumerate() {
             let third = (three[0] - three[1] * 2.0 + three[2]) * self.smoothing;
             for (sum, weight) in sums[first..].iter_mut().zip([-1.0, 3.0, -3.0, 1.0]) {

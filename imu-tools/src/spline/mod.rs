@@ -119,7 +119,9 @@ pub enum FitError {
     )]
     Turn,
     /// Numbers beyond what can be factored.
-    #[error("the poses do not decide a curve with knots {0} s apart; take them further apart")]
+    #[error(
+        "the poses do not decide a curve with knots {0} s apart; take them further apart, or smooth less"
+    )]
     Undecided(f64),
     /// Sweeps that do not settle.
     #[error(
@@ -181,30 +183,26 @@ fn fit_every<F: Form<f64>>(
     let interpolates = options.smoothing_s == 0.0 && through::are_near(poses, step_ns);
     let knots = spacing::knots(poses, step_ns)?;
     let undecided = FitError::Undecided(f64::from(step_ns) / 1e9);
-    let solver = LeastSquares::new(poses, &knots, options.smoothing_s).ok_or(undecided)?;
+    let held = bridge::bridged(poses, step_ns);
+    let solver = LeastSquares::new(&held, &knots, options.smoothing_s).ok_or(undecided)?;
     let control = if interpolates {
         through::control::<F>(poses, &knots)?
     } else {
         // From the first pose: the digits of a place far from home would be lost where little decides.
         let home = poses[0].pose.translation();
-        let places = solver.vectors(poses.iter().map(|pose| pose.pose.translation() - home));
+        let ways: Vec<_> = held.iter().map(|pose| pose.pose.translation() - home).collect();
+        let places = solver.vectors(&ways).ok_or(undecided)?;
         let mut control = begin(poses, &knots)
             .zip(places)
             .map(|(attitude, place)| Pose::new(attitude, place + home))
             .collect::<Result<Vec<_>, _>>()?;
-        let settled = match bridge::bridged(poses, step_ns) {
-            None => solver.attitudes::<F>(poses, &knots, &mut control)?,
-            Some(poses) => LeastSquares::new(&poses, &knots, options.smoothing_s)
-                .ok_or(undecided)?
-                .attitudes::<F>(&poses, &knots, &mut control)?,
-        };
-        if !settled {
+        if !solver.attitudes::<F>(&held, &knots, &mut control)? {
             return Err(FitError::Unsettled(f64::from(step_ns) / 1e9));
         }
         control
     };
     let error = Distance::of::<F>(poses, &knots, &control)?;
-    let jitter = Jitter::of(poses).map(|jitter| jitter.on(&solver, poses, &knots));
+    let jitter = Jitter::of(poses).and_then(|jitter| jitter.on(&solver, &held, &knots));
     let span_ns = spacing::ends_ns(poses);
     Ok(Fit { form: options.form, knots, control, span_ns, error, interpolates, jitter })
 }

@@ -15,7 +15,8 @@ pub enum Spacing {
     /// As far as the poses: a knot each where their stamps are equally spaced but for rounding, else the median time
     /// between them.
     AsPoses,
-    /// This far, ns. Where that is no part of the whole, poses at the end decide little of the last interval.
+    /// As near to this far, ns, as equal parts of the whole are: poses at the beginning of an interval would decide
+    /// little of it.
     Every(u32),
     /// As far as they can be, in equal parts of the whole, so that no pose is further from the curve than this.
     Within {
@@ -58,7 +59,7 @@ pub(super) fn fitted<F: Form<f64>>(
 ) -> Result<Fit, FitError> {
     let (position_m, rotation_rad) = match options.spacing {
         Spacing::AsPoses => return fit_every::<F>(poses, options, step_of_poses_ns(poses)?),
-        Spacing::Every(step_ns) => return fit_every::<F>(poses, options, step_ns),
+        Spacing::Every(step_ns) => return fit_every::<F>(poses, options, part_ns(poses, step_ns)),
         Spacing::Within { position_m, rotation_rad } => (position_m, rotation_rad),
     };
     let least = step_of_poses_ns(poses)?;
@@ -97,6 +98,16 @@ pub(super) fn fitted<F: Form<f64>>(
 
 fn is_within(fit: &Fit, position_m: f64, rotation_rad: f64) -> bool {
     fit.error.largest_position_m <= position_m && fit.error.largest_rotation_rad <= rotation_rad
+}
+
+/// The equal part of the whole that is nearest to this step; a step that cannot be stays as it is.
+fn part_ns(poses: &[TimedPose], step_ns: u32) -> u32 {
+    let (span, step) = (u128::from(span_ns(poses)), u128::from(step_ns));
+    if step == 0 || step > span {
+        return step_ns;
+    }
+    let parts = (span + step / 2) / step;
+    u32::try_from(span.div_ceil(parts)).unwrap_or(step_ns)
 }
 
 /// The time between poses, ns: all of the record in equal parts where each pose is near the end of one, else the

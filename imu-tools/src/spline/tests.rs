@@ -51,9 +51,11 @@ fn least_squares_find_a_curve_that_is_one() {
     // A curve of known control points, looked at at uneven instants, comes back.
     let coarse = fit(&every(200_000_000, 30), &options(FormName::Plain, Spacing::AsPoses)).unwrap();
     let curve = SplitSpline::new(-200_000_000, 200_000_000, &coarse.control).unwrap();
-    let poses: Vec<_> = (0..580_i64)
+    // The last one where an interval ends: knots are equal parts of the whole.
+    let poses: Vec<_> = (0..=580_i64)
         .map(|k| {
-            let stamp_ns = k * 10_000_000 + (k * k * 7919) % 9_000_000;
+            let uneven_ns = if k < 580 { (k * k * 7919) % 9_000_000 } else { 0 };
+            let stamp_ns = k * 10_000_000 + uneven_ns;
             TimedPose { stamp_ns, pose: curve.pose(stamp_ns).unwrap() }
         })
         .collect();
@@ -184,35 +186,74 @@ fn rounded_stamps_cost_nothing_at_the_ends() {
 }
 
 #[test]
-fn far_from_home_little_is_lost() {
+fn a_spacing_that_does_not_divide_costs_nothing_at_the_end() {
+    // 20.01 s in steps of 0.2 s: of an interval more than a hundred, one pose would decide.
+    let poses = every(10_000_000, 2002);
+    let divided =
+        fit(&every(10_000_000, 2001), &options(FormName::Symmetric, Spacing::Every(200_000_000)));
+    let fit = fit(&poses, &options(FormName::Symmetric, Spacing::Every(200_000_000))).unwrap();
+    assert_eq!((fit.knots.count(), fit.knots.step_ns()), (103, 200_100_000));
+    let ((a, _), (divided_a, _)) = (off_at_the_ends(&fit), off_at_the_ends(&divided.unwrap()));
+    assert!(a < 1.1 * divided_a, "{a} {divided_a}");
+}
+
+#[test]
+fn far_from_home_nothing_is_lost() {
     // Stamps with jitter and a hole: intervals that hardly a pose decides.
-    let mut poses: Vec<_> = (0..1500_i64)
+    let mut far: Vec<_> = (0..1500_i64)
         .map(|k| on_the_ellipse(k * 10_000_000 + (k * k * 7919) % 2_000_000))
         .collect();
-    poses.drain(700..705);
-    let far: Vec<_> = poses
+    far.drain(700..705);
+    let home = Vector3::new(5e5, 5e6, 0.0);
+    let moved = |pose: &Pose<f64>, by| Pose::new(pose.rotation(), pose.translation() + by).unwrap();
+    for pose in &mut far {
+        pose.pose = moved(&pose.pose, home);
+    }
+    // Back again: of places rounded there, differences are exact.
+    let near: Vec<_> = far
         .iter()
-        .map(|TimedPose { stamp_ns, pose }| {
-            let place = pose.translation() + Vector3::new(5e5, 5e6, 0.0);
-            TimedPose { stamp_ns: *stamp_ns, pose: Pose::new(pose.rotation(), place).unwrap() }
+        .map(|TimedPose { stamp_ns, pose }| TimedPose {
+            stamp_ns: *stamp_ns,
+            pose: moved(pose, -home),
         })
         .collect();
     let options = options(FormName::Symmetric, Spacing::Every(10_000_000));
-    let (near, far) = (fit(&poses, &options).unwrap(), fit(&far, &options).unwrap());
+    let (near, far) = (fit(&near, &options).unwrap(), fit(&far, &options).unwrap());
     let acceleration = |fit: &Fit, t_ns: i64| {
         let curve = SymmetricSplitSpline::new(fit.knots.start_ns(), 10_000_000, &fit.control);
         curve.unwrap().full(t_ns).unwrap().acceleration_w
     };
     for t_ns in (near.span_ns.0..near.span_ns.1).step_by(3_000_000) {
-        // Nothing but the smoothing decides the hole and its edges: 10¹⁰ times the rounding of what it has.
-        if (6_900_000_000..7_150_000_000).contains(&t_ns) {
-            continue;
-        }
         let off = acceleration(&near, t_ns) - acceleration(&far, t_ns);
-        // Places there are rounded by 5e-10 m, poses and control points alike: a second difference of three of either
-        // over h² is off by 4·5e-10·1e4 = 2e-5 m/s², and many thousand times that where hardly a pose decides.
-        // (Solved from the origin it would be hundreds of m/s².)
-        assert!(off.abs().max() < 1.0, "{t_ns}: {off}");
+        // Control points there are rounded by half of 2⁻³⁰ m: 4·2⁻³¹·10⁴ = 1.9e-5 m/s² of a second difference.
+        assert!(off.abs().max() < 2e-5, "{t_ns}: {off}");
+    }
+}
+
+#[test]
+fn slow_smoothing_keeps_its_digits() {
+    // A parabola passes any smoothing: its third differences are none.
+    let poses: Vec<_> = (0..2000_i64)
+        .map(|k| {
+            let t = 0.01 * k as f64;
+            let place = Vector3::new(3.0 * t, 0.5 * t * t, -t);
+            TimedPose {
+                stamp_ns: k * 10_000_000,
+                pose: Pose::new(so3::exp(place * 0.0), place).unwrap(),
+            }
+        })
+        .collect();
+    for hertz in [1.0, 0.3, 0.1, 0.05] {
+        let smoothing_s = 1.0 / (core::f64::consts::TAU * hertz);
+        let spacing = Spacing::Every(10_000_000);
+        let fit = fit(&poses, &Options { form: FormName::Plain, spacing, smoothing_s });
+        match fit {
+            // Roundings of 200 m.
+            Ok(fit) => assert!(fit.error.largest_position_m < 1e-9, "{hertz}: {:?}", fit.error),
+            Err(error) => {
+                assert!(hertz < 0.1 && matches!(error, FitError::Undecided(_)), "{hertz}: {error}")
+            }
+        }
     }
 }
 

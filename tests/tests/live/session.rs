@@ -329,8 +329,8 @@ fn a_killed_stream_goes_on_with_a_gap() {
     let of = |name: &str| gyroscope[name].as_u64().unwrap();
     assert_eq!((of("duplicates"), of("backward"), of("restarts")), (0, 0, 0), "{gyroscope}");
     assert_eq!(of("gap_count"), 1, "{gyroscope}");
-    // Of the pause's 700 samples the terminal keeps some; what it does not is missing. And all that was sent is
-    // there or missing, but for the beginning before the port was open, and the burst at the end.
-    assert!(of("missing") >= 100, "{gyroscope}");
+    // At least the pause is missing; and all that was sent is there or missing, but for the beginning
+    // before the port was open, and the burst at the end.
+    assert!(of("missing") >= 700, "{gyroscope}");
     assert!(of("samples") + of("missing") <= sent, "{gyroscope} of {sent}");
 }

@@ -101,10 +101,11 @@ fn group(_: &Path) -> Option<String> {
     None
 }
 
-/// Opens a device that nobody else has.
+/// Opens a device that nobody else has, and hears it from now on: what waited in it came nobody knows when.
 fn connect(path: &Path, baud: u32) -> io::Result<SerialPort> {
     let mut port = SerialPort::open(path, baud)?;
     port.set_read_timeout(PAUSE)?;
+    port.discard_input_buffer()?;
     Ok(port)
 }
 
