@@ -53,7 +53,7 @@ fn matrices(c: &mut Criterion) {
 /// The peer computes the same curve.
 fn check(matrices: &[M4], logs: &[M4]) {
     let poses = poses();
-    let curve = Se3Spline::new(0, STEP_NS, &poses).expect("a curve");
+    let curve = Se3Spline::from_control_points(0, STEP_NS, &poses).expect("a curve");
     let full = curve.full(i64::from(STEP_NS) * 5 + 2_500_000).expect("inside");
     let [t, t1, t2] = evaluated(&matrices[4], [&logs[4], &logs[5], &logs[6]], 0.25, 100.0);
     for k in 0..3 {
@@ -95,12 +95,12 @@ fn all<T: Real>(c: &mut Criterion, scalar: &str) {
             ask(c, &name("IMU"), |t| curve.imu(t, &gravity));
         };
     }
-    every!("split, cached", SplitSpline::new(0, STEP_NS, &knots));
-    every!("split, uncached", SplitSpline::new(0, STEP_NS, &poses));
-    every!("symmetric, cached", SymmetricSplitSpline::new(0, STEP_NS, &knots));
-    every!("symmetric, uncached", SymmetricSplitSpline::new(0, STEP_NS, &poses));
-    every!("SE(3), cached", Se3Spline::new(0, STEP_NS, &screws));
-    every!("SE(3), uncached", Se3Spline::new(0, STEP_NS, &poses));
+    every!("split, cached", SplitSpline::from_control_points(0, STEP_NS, &knots));
+    every!("split, uncached", SplitSpline::from_control_points(0, STEP_NS, &poses));
+    every!("symmetric, cached", SymmetricSplitSpline::from_control_points(0, STEP_NS, &knots));
+    every!("symmetric, uncached", SymmetricSplitSpline::from_control_points(0, STEP_NS, &poses));
+    every!("SE(3), cached", Se3Spline::from_control_points(0, STEP_NS, &screws));
+    every!("SE(3), uncached", Se3Spline::from_control_points(0, STEP_NS, &poses));
 }
 
 fn evaluations(c: &mut Criterion) {

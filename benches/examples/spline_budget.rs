@@ -43,11 +43,13 @@ fn main() -> ExitCode {
     let mut single = vec![Knot::<f32>::default(); poses.len()];
     cache(&poses, &mut double).expect("neighbours");
     cache(&poses, &mut single).expect("neighbours");
-    let cached = SplitSpline::new(0, STEP_NS, &double).expect("a curve");
-    let cached_single = SplitSpline::new(0, STEP_NS, &single).expect("a curve");
-    let uncached = SplitSpline::new(0, STEP_NS, &poses).expect("a curve");
-    let symmetric = SymmetricSplitSpline::new(0, STEP_NS, &double).expect("a curve");
-    let uncached_symmetric = SymmetricSplitSpline::new(0, STEP_NS, &poses).expect("a curve");
+    let cached = SplitSpline::from_control_points(0, STEP_NS, &double).expect("a curve");
+    let cached_single = SplitSpline::from_control_points(0, STEP_NS, &single).expect("a curve");
+    let uncached = SplitSpline::from_control_points(0, STEP_NS, &poses).expect("a curve");
+    let symmetric =
+        SymmetricSplitSpline::from_control_points(0, STEP_NS, &double).expect("a curve");
+    let uncached_symmetric =
+        SymmetricSplitSpline::from_control_points(0, STEP_NS, &poses).expect("a curve");
 
     let matrices: Vec<_> = poses.iter().map(homogeneous).collect();
     let logs: Vec<_> = matrices.windows(2).map(|two| log_between(&two[0], &two[1])).collect();

@@ -2,12 +2,14 @@
 //!
 //! An evaluation then takes no logarithm. Differences are formed in the scalar of the poses, before they are rounded
 //! to the scalar of the knots: `f32` knots of `f64` poses keep acceleration right to 10⁻⁴ m/s² at 100 knots a second,
-//! where `f32` positions 20 m away give it to 3·10⁻² m/s².
+//! where `f32` positions 20 m away give it to 3·10⁻² m/s². ([`ScrewKnot`]s to 2·10⁻⁴: what they keep is a twist, and
+//! the motion is a product of its parts.)
 
 use super::control::{Attitudes, ControlPoint, Positions, Screw, Screws, Sealed, Window};
 use super::turn::Turn;
 use crate::se3::{Pose, Twist};
-use crate::{Error, Real};
+use crate::vector::within;
+use crate::{Error, Real, so3};
 use nalgebra::{Quaternion, Vector3};
 
 /// A control pose, and the turn and the way to the next one. Made by [`cache`]; a default one is at the origin.
@@ -59,6 +61,14 @@ impl<T: Real> ScrewKnot<T> {
     }
 }
 
+impl<T: Real> ScrewKnot<T> {
+    /// The control pose itself.
+    #[must_use]
+    pub fn pose(&self) -> Pose<T> {
+        self.pose
+    }
+}
+
 impl<T: Real> Default for ScrewKnot<T> {
     fn default() -> Self {
         Self::between::<T>(&Pose::identity(), &Pose::identity())
@@ -102,12 +112,33 @@ fn fill<S: Real, K>(
     Ok(())
 }
 
+/// Of poses and where each one's knot leads: that it is the next pose, but for the roundings of either. (Poses may be
+/// products of many, and off from unit length by more than one rounding.)
+fn all_lead_on<T: Real>(mut knots: impl Iterator<Item = (Pose<T>, Pose<T>)>) -> Result<(), Error> {
+    let roundings = T::from_f64(64.0) * T::EPSILON;
+    let Some((_, mut led)) = knots.next() else { return Ok(()) };
+    let leads_on = |(pose, next): (Pose<T>, Pose<T>)| {
+        let (a, b) = (led.rotation().coords, pose.rotation().coords);
+        // Both signs are the same attitude.
+        let near = |x: &T| x.abs() <= roundings;
+        let is_turned = (a - b).iter().all(near) || (a + b).iter().all(near);
+        let (p, q) = (led.translation(), pose.translation());
+        let far = p.iter().chain(q.iter()).fold(T::ONE, |far, x| far + x.abs());
+        led = next;
+        is_turned && within(&(p - q), roundings * far)
+    };
+    if knots.all(leads_on) { Ok(()) } else { Err(Error::OutOfRange("points")) }
+}
+
 impl<T: Real> Sealed for Knot<T> {}
 
 impl<T: Real> ControlPoint<T> for Knot<T> {
-    /// Whoever made them has checked.
-    fn check(_: &[Self]) -> Result<(), Error> {
-        Ok(())
+    /// Refuses, naming `points`, knots that do not lead to the next one: not all filled, reversed, or of two curves.
+    fn check(points: &[Self]) -> Result<(), Error> {
+        all_lead_on(points.iter().map(|knot| {
+            let there = so3::product(&knot.pose.rotation(), &so3::exp(knot.turn.vector));
+            (knot.pose, Pose::of_unit(there, knot.pose.translation() + knot.step))
+        }))
     }
 }
 
@@ -130,9 +161,9 @@ impl<T: Real> Positions<T> for Knot<T> {
 impl<T: Real> Sealed for ScrewKnot<T> {}
 
 impl<T: Real> ControlPoint<T> for ScrewKnot<T> {
-    /// Whoever made them has checked.
-    fn check(_: &[Self]) -> Result<(), Error> {
-        Ok(())
+    /// As of [`Knot`].
+    fn check(points: &[Self]) -> Result<(), Error> {
+        all_lead_on(points.iter().map(|knot| (knot.pose, knot.pose.then(&knot.screw.part(T::ONE)))))
     }
 }
 

@@ -18,7 +18,7 @@ use nalgebra::Vector3;
 /// use imu_core::spline::R3Spline;
 /// // Falling for half a second: control points of a parabola are off by h²g/6 and give its acceleration exactly.
 /// let points: [_; 6] = core::array::from_fn(|k| Vector3::new(0.0, 0.0, -4.905 * (0.1 * k as f64).powi(2)));
-/// let fall = R3Spline::new(0, 100_000_000, &points)?;
+/// let fall = R3Spline::from_control_points(0, 100_000_000, &points)?;
 /// assert!((fall.full(250_000_000)?.acceleration_w.z + 9.81).abs() < 1e-12);
 /// # Ok::<(), imu_core::Error>(())
 /// ```
@@ -29,11 +29,16 @@ pub struct R3Spline<'a, T: Real, C> {
 }
 
 impl<'a, T: Real, C: Positions<T>> R3Spline<'a, T, C> {
-    /// Of control points every `step_ns`, the first at `start_ns`; in m.
+    /// Of control points every `step_ns`, the first at `start_ns`; in m. They are no points of the curve:
+    /// [`interpolate`](super::interpolate) and [`quasi_interpolant`](super::quasi_interpolant) make them of those.
     ///
     /// # Errors
     /// As of [`Knots::new`], and as the [`check`](super::ControlPoint::check) of the control points says.
-    pub fn new(start_ns: i64, step_ns: u32, points: &'a [C]) -> Result<Self, Error> {
+    pub fn from_control_points(
+        start_ns: i64,
+        step_ns: u32,
+        points: &'a [C],
+    ) -> Result<Self, Error> {
         let knots = Knots::new(start_ns, step_ns, points.len())?;
         C::check(points)?;
         Ok(Self { knots, points })

@@ -24,7 +24,7 @@ use nalgebra::Vector3;
 /// // Control poses on a circle of 10 m, 0.2 rad/s: on the circle is the curve.
 /// let along = |k: usize| Twist { linear: Vector3::new(0.2 * k as f64, 0.0, 0.0), angular: Vector3::new(0.0, 0.0, 0.02 * k as f64) };
 /// let points: [_; 6] = core::array::from_fn(|k| exp(&along(k)));
-/// let curve = Se3Spline::new(0, 100_000_000, &points)?;
+/// let curve = Se3Spline::from_control_points(0, 100_000_000, &points)?;
 /// let full = curve.full(210_000_000)?;
 /// assert!(((full.pose.translation() - Vector3::new(0.0, 10.0, 0.0)).dot(&full.velocity_w)).abs() < 1e-12);
 /// # Ok::<(), imu_core::Error>(())
@@ -36,11 +36,16 @@ pub struct Se3Spline<'a, T: Real, C> {
 }
 
 impl<'a, T: Real, C: Screws<T>> Se3Spline<'a, T, C> {
-    /// Of control poses every `step_ns`, the first at `start_ns`.
+    /// Of control poses every `step_ns`, the first at `start_ns`. They are no poses of the curve:
+    /// [`quasi_interpolant_on_screws`](super::quasi_interpolant_on_screws) makes them of those.
     ///
     /// # Errors
     /// As of [`Knots::new`], and as the [`check`](super::ControlPoint::check) of the control points says.
-    pub fn new(start_ns: i64, step_ns: u32, points: &'a [C]) -> Result<Self, Error> {
+    pub fn from_control_points(
+        start_ns: i64,
+        step_ns: u32,
+        points: &'a [C],
+    ) -> Result<Self, Error> {
         let knots = Knots::new(start_ns, step_ns, points.len())?;
         C::check(points)?;
         Ok(Self { knots, points })

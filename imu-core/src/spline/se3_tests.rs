@@ -64,7 +64,7 @@ proptest! {
         let step = 1_000_000_000;
         let t_ns = step + (u * 1e9) as i64;
         let u = (t_ns - step) as f64 / 1e9;
-        let curve = Se3Spline::new(0, 1_000_000_000, &four).unwrap();
+        let curve = Se3Spline::from_control_points(0, 1_000_000_000, &four).unwrap();
         let full = curve.full(t_ns).unwrap();
         let [t, t1, t2] = paper(&four, u, 1.0);
         let pose = homogeneous(&full.pose);

@@ -187,7 +187,7 @@ pub struct So3Curve<'a, T: Real, C, F> {
 /// use imu_core::so3;
 /// use imu_core::spline::So3Spline;
 /// let points: [_; 5] = core::array::from_fn(|k| so3::exp(Vector3::new(0.0, 0.1 * k as f64, 0.0)));
-/// let pitching = So3Spline::new(0, 50_000_000, &points)?;
+/// let pitching = So3Spline::from_control_points(0, 50_000_000, &points)?;
 /// let (_, rate) = pitching.attitude_and_rate(120_000_000)?;
 /// assert!((rate.y - 2.0).abs() < 1e-14); // 0.1 rad every 50 ms
 /// # Ok::<(), imu_core::Error>(())
@@ -198,11 +198,16 @@ pub type So3Spline<'a, T, C> = So3Curve<'a, T, C, OneSided>;
 pub type SymmetricSo3Spline<'a, T, C> = So3Curve<'a, T, C, TimeSymmetric>;
 
 impl<'a, T: Real, C: Attitudes<T>, F: Form<T>> So3Curve<'a, T, C, F> {
-    /// Of control points every `step_ns`, the first at `start_ns`.
+    /// Of control points every `step_ns`, the first at `start_ns`. They are no attitudes of the curve:
+    /// [`interpolate`](super::interpolate) and [`quasi_interpolant`](super::quasi_interpolant) make them of those.
     ///
     /// # Errors
     /// As of [`Knots::new`], and as the [`check`](super::ControlPoint::check) of the control points says.
-    pub fn new(start_ns: i64, step_ns: u32, points: &'a [C]) -> Result<Self, Error> {
+    pub fn from_control_points(
+        start_ns: i64,
+        step_ns: u32,
+        points: &'a [C],
+    ) -> Result<Self, Error> {
         let knots = Knots::new(start_ns, step_ns, points.len())?;
         C::check(points)?;
         Ok(Self { knots, points, form: PhantomData })

@@ -33,18 +33,26 @@ pub type SplitSpline<'a, T, C> = SplitCurve<'a, T, C, OneSided>;
 pub type SymmetricSplitSpline<'a, T, C> = SplitCurve<'a, T, C, TimeSymmetric>;
 
 impl<'a, T: Real, C: Attitudes<T> + Positions<T>, F: Form<T>> SplitCurve<'a, T, C, F> {
-    /// Of control poses every `step_ns`, the first at `start_ns`.
+    /// Of control poses every `step_ns`, the first at `start_ns`. They are no poses of the curve:
+    /// [`interpolate`](super::interpolate) and [`quasi_interpolant`](super::quasi_interpolant) make them of those.
     ///
     /// # Errors
     /// As of [`Knots::new`], and as the [`check`](super::ControlPoint::check) of the control points says.
-    pub fn new(start_ns: i64, step_ns: u32, points: &'a [C]) -> Result<Self, Error> {
+    pub fn from_control_points(
+        start_ns: i64,
+        step_ns: u32,
+        points: &'a [C],
+    ) -> Result<Self, Error> {
         let knots = Knots::new(start_ns, step_ns, points.len())?;
         C::check(points)?;
         Ok(Self::of_checked(knots, points))
     }
 
+    /// Of control poses, as many as there are knots, that made a curve before: in no time, for who cannot keep the
+    /// curve beside them. They are not looked at again; of others the curve is wrong, or an error.
+    #[must_use]
     #[inline]
-    pub(super) fn of_checked(knots: Knots<T>, points: &'a [C]) -> Self {
+    pub fn of_checked(knots: Knots<T>, points: &'a [C]) -> Self {
         Self { knots, points, form: PhantomData }
     }
 

@@ -11,13 +11,16 @@ use super::cached::Knot;
 use super::control::are_neighbours;
 use super::knots::Knots;
 use super::split::{SplitSpline, SymmetricSplitSpline};
-use crate::se3::Pose;
+use crate::se3::{self, Pose};
 use crate::{Error, Real, so3};
 
 /// The control pose for the middle one of three poses at even distances in time.
 ///
 /// A curve of such control poses goes through poses of a smooth motion but for h⁴/36 of its fourth derivative, and as
 /// closely through attitudes. It hardly smooths: of independent jitter of the poses, 85 % comes out at the knots.
+///
+/// For curves of positions beside attitudes. An [`Se3Spline`](super::Se3Spline) of these is of order 2:
+/// [`quasi_interpolant_on_screws`] is for that one.
 ///
 /// # Errors
 /// [`Error::OutOfRange`], naming `turn between neighbours`, where those are further apart than π − 10⁻³ rad.
@@ -37,6 +40,24 @@ pub fn quasi_interpolant<T: Real>(
     let bend = (after.translation() - position) - (position - before.translation());
     let rotation = so3::renormalised(&so3::product(&attitude, &turn));
     Ok(Pose::of_unit(rotation, position + bend * sixth))
+}
+
+/// The same for an [`Se3Spline`](super::Se3Spline), whose positions and attitudes bend together: in the tangent space of
+/// the middle pose, by the logarithm of SE(3).
+///
+/// # Errors
+/// As of [`quasi_interpolant`].
+pub fn quasi_interpolant_on_screws<T: Real>(
+    before: &Pose<T>,
+    at: &Pose<T>,
+    after: &Pose<T>,
+) -> Result<Pose<T>, Error> {
+    are_neighbours(&before.rotation(), &at.rotation())?;
+    are_neighbours(&at.rotation(), &after.rotation())?;
+    let back = at.inverse();
+    let bend = se3::log(&back.then(after)) + se3::log(&back.then(before));
+    let control = at.then(&se3::exp(&(bend * T::from_f64(-1.0 / 6.0))));
+    Ok(Pose::of_unit(so3::renormalised(&control.rotation()), control.translation()))
 }
 
 /// Takes poses one by one, every `step_ns`, and holds the curve of the newest whole interval.
@@ -165,7 +186,7 @@ mod tests {
         let controls: std::vec::Vec<_> = (1..30)
             .map(|k| quasi_interpolant(&pose(k - 1), &pose(k), &pose(k + 1)).unwrap())
             .collect();
-        let whole = SplitSpline::new(1000 + 500, 500, &controls).unwrap();
+        let whole = SplitSpline::from_control_points(1000 + 500, 500, &controls).unwrap();
         let mut stream = Stream::<f64>::new(1000, 500).unwrap();
         for k in 0..30 {
             assert_eq!(stream.next_ns(), Some(1000 + 500 * i64::from(k)));

@@ -17,7 +17,7 @@ use nalgebra::Vector3;
 /// use imu_core::spline::SplitSpline;
 /// use imu_core::trajectory::{AlongSpline, Motion, Trajectory};
 /// let still = [Pose::identity(); 5];
-/// let along = AlongSpline::new(SplitSpline::new(0, 100_000_000, &still)?);
+/// let along = AlongSpline::new(SplitSpline::from_control_points(0, 100_000_000, &still)?);
 /// let motion: Motion<f32> = along.at(150_000_000);
 /// assert_eq!(motion.specific_force.z, 9.81);
 /// assert_eq!(Trajectory::<f32>::span(&along), (100_000_000, 300_000_000));
@@ -111,7 +111,9 @@ mod tests {
                 Pose::new(m.attitude_wb, m.position_w).unwrap()
             })
             .collect();
-        let along = AlongSpline::new(SymmetricSplitSpline::new(0, 10_000_000, &poses).unwrap());
+        let along = AlongSpline::new(
+            SymmetricSplitSpline::from_control_points(0, 10_000_000, &poses).unwrap(),
+        );
         assert_eq!(Trajectory::<f64>::span(&along), (10_000_000, 1_980_000_000));
         for k in 0..100 {
             let t_ns = 10_000_000 + k * 19_700_000;

@@ -29,7 +29,8 @@ impl Distance {
         knots: &Knots<f64>,
         control: &[Pose<f64>],
     ) -> Result<Self, Error> {
-        let curve = SplitCurve::<_, _, F>::new(knots.start_ns(), knots.step_ns(), control)?;
+        let curve =
+            SplitCurve::<_, _, F>::from_control_points(knots.start_ns(), knots.step_ns(), control)?;
         let begin = knots.start_ns();
         let (mut position, mut rotation) = (Largest::at(begin), Largest::at(begin));
         for TimedPose { stamp_ns, pose } in poses {

@@ -107,7 +107,7 @@ impl LeastSquares {
     /// Turns control points of given attitudes towards those of the poses, by sweeps; whether they have settled.
     ///
     /// # Errors
-    /// As of [`So3Curve::new`]: where control points would be half a turn apart.
+    /// As of [`So3Curve::from_control_points`]: where control points would be half a turn apart.
     pub(super) fn attitudes<F: Form<f64>>(
         &self,
         poses: &[TimedPose],
@@ -116,7 +116,11 @@ impl LeastSquares {
     ) -> Result<bool, Error> {
         let mut largest = f64::INFINITY;
         for _ in 0..MOST_SWEEPS {
-            let curve = So3Curve::<_, _, F>::new(knots.start_ns(), knots.step_ns(), &*control)?;
+            let curve = So3Curve::<_, _, F>::from_control_points(
+                knots.start_ns(),
+                knots.step_ns(),
+                &*control,
+            )?;
             let lack = poses
                 .iter()
                 .map(|TimedPose { stamp_ns, pose }| {
@@ -138,7 +142,7 @@ impl LeastSquares {
             }
         }
         // The last turn may have taken neighbours apart.
-        So3Curve::<f64, _, F>::new(knots.start_ns(), knots.step_ns(), &*control)
+        So3Curve::<f64, _, F>::from_control_points(knots.start_ns(), knots.step_ns(), &*control)
             .map(|_| largest < UNSETTLED)
     }
 

@@ -121,27 +121,23 @@ impl Route {
     /// # Errors
     /// [`OutOfRange`](CoreError::OutOfRange), naming `t_ns`, outside the span of its knots.
     pub fn full(&self, t_ns: i64) -> Result<Full<f64>, CoreError> {
-        let (start_ns, step_ns) = (self.knots.start_ns(), self.knots.step_ns());
         match self.form {
-            FormName::Plain => SplitSpline::new(start_ns, step_ns, &self.cached)?.full(t_ns),
+            FormName::Plain => SplitSpline::of_checked(self.knots, &self.cached).full(t_ns),
             FormName::Symmetric => {
-                SymmetricSplitSpline::new(start_ns, step_ns, &self.cached)?.full(t_ns)
+                SymmetricSplitSpline::of_checked(self.knots, &self.cached).full(t_ns)
             }
         }
     }
 
     /// Asks the motion along it, under this gravity in m/s².
     fn ask<R>(&self, gravity: f64, question: impl FnOnce(&dyn Trajectory<f64>) -> R) -> R {
-        const CHECKED: &str = "knots that were made before can be made again";
-        let (start_ns, step_ns) = (self.knots.start_ns(), self.knots.step_ns());
         match self.form {
             FormName::Plain => {
-                let curve = SplitSpline::new(start_ns, step_ns, &self.cached).expect(CHECKED);
+                let curve = SplitSpline::of_checked(self.knots, &self.cached);
                 question(&AlongSpline { curve, gravity })
             }
             FormName::Symmetric => {
-                let curve =
-                    SymmetricSplitSpline::new(start_ns, step_ns, &self.cached).expect(CHECKED);
+                let curve = SymmetricSplitSpline::of_checked(self.knots, &self.cached);
                 question(&AlongSpline { curve, gravity })
             }
         }

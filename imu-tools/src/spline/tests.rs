@@ -50,7 +50,8 @@ fn poses_at_equal_steps_are_interpolated() {
 fn least_squares_find_a_curve_that_is_one() {
     // A curve of known control points, looked at at uneven instants, comes back.
     let coarse = fit(&every(200_000_000, 30), &options(FormName::Plain, Spacing::AsPoses)).unwrap();
-    let curve = SplitSpline::new(-200_000_000, 200_000_000, &coarse.control).unwrap();
+    let curve =
+        SplitSpline::from_control_points(-200_000_000, 200_000_000, &coarse.control).unwrap();
     // The last one where an interval ends: knots are equal parts of the whole.
     let poses: Vec<_> = (0..=580_i64)
         .map(|k| {
@@ -93,7 +94,11 @@ fn jitter_is_found_and_what_it_makes() {
     // 9000 sizes, seven of which share a pose: the median scatters by 2 %.
     assert!((jitter.poses.position_m / position_m - 1.0).abs() < 0.1, "{jitter:?}");
     assert!((jitter.poses.rotation_rad / rotation_rad - 1.0).abs() < 0.1, "{jitter:?}");
-    let curve = SymmetricSplitSpline::new(fit.knots.start_ns(), fit.knots.step_ns(), &fit.control);
+    let curve = SymmetricSplitSpline::from_control_points(
+        fit.knots.start_ns(),
+        fit.knots.step_ns(),
+        &fit.control,
+    );
     let curve = curve.unwrap();
     let (mut acceleration, mut rate, mut count) = (0.0, 0.0, 0.0);
     for k in 100..5900_i64 {
@@ -129,8 +134,12 @@ fn smoothing_passes_what_it_says() {
         let spacing = Spacing::Every(40_000_000);
         let fit =
             fit(&poses, &Options { form: FormName::Symmetric, spacing, smoothing_s }).unwrap();
-        let curve =
-            SymmetricSplitSpline::new(fit.knots.start_ns(), 40_000_000, &fit.control).unwrap();
+        let curve = SymmetricSplitSpline::from_control_points(
+            fit.knots.start_ns(),
+            40_000_000,
+            &fit.control,
+        )
+        .unwrap();
         let peak = curve.pose(20_250_000_000).unwrap();
         assert!((peak.translation().x - left).abs() < 2e-3, "{hertz} {}", peak.translation().x);
         let turn = so3::log(&peak.rotation()).x / 0.1;
@@ -143,7 +152,9 @@ fn a_hole_is_crossed_smoothly() {
     let mut poses = every(20_000_000, 500);
     poses.drain(200..225);
     let fit = fit(&poses, &options(FormName::Symmetric, Spacing::Every(50_000_000))).unwrap();
-    let curve = SymmetricSplitSpline::new(fit.knots.start_ns(), 50_000_000, &fit.control).unwrap();
+    let curve =
+        SymmetricSplitSpline::from_control_points(fit.knots.start_ns(), 50_000_000, &fit.control)
+            .unwrap();
     let middle = 4_250_000_000;
     let (there, truth) = (curve.pose(middle).unwrap(), on_the_ellipse(middle).pose);
     // Half a second across: what a parabola from both sides misses, a few centimetres of a bobbing of 1 m and π rad/s.
@@ -152,8 +163,12 @@ fn a_hole_is_crossed_smoothly() {
 
 /// The largest error of acceleration and of ω in the first and the last two intervals.
 fn off_at_the_ends(fit: &Fit) -> (f64, f64) {
-    let curve =
-        SymmetricSplitSpline::new(fit.knots.start_ns(), fit.knots.step_ns(), &fit.control).unwrap();
+    let curve = SymmetricSplitSpline::from_control_points(
+        fit.knots.start_ns(),
+        fit.knots.step_ns(),
+        &fit.control,
+    )
+    .unwrap();
     let (first, last) = fit.span_ns;
     let step = i64::from(fit.knots.step_ns()) / 10;
     let instants = (0..20).flat_map(|k| [first + k * step, last - k * step]);
@@ -220,7 +235,11 @@ fn far_from_home_nothing_is_lost() {
     let options = options(FormName::Symmetric, Spacing::Every(10_000_000));
     let (near, far) = (fit(&near, &options).unwrap(), fit(&far, &options).unwrap());
     let acceleration = |fit: &Fit, t_ns: i64| {
-        let curve = SymmetricSplitSpline::new(fit.knots.start_ns(), 10_000_000, &fit.control);
+        let curve = SymmetricSplitSpline::from_control_points(
+            fit.knots.start_ns(),
+            10_000_000,
+            &fit.control,
+        );
         curve.unwrap().full(t_ns).unwrap().acceleration_w
     };
     for t_ns in (near.span_ns.0..near.span_ns.1).step_by(3_000_000) {
@@ -269,7 +288,11 @@ fn attitudes_go_the_short_way_across_long_holes() {
         for form in [FormName::Plain, FormName::Symmetric] {
             let fit = fit(&poses, &options(form, Spacing::AsPoses)).unwrap();
             assert!(fit.error.largest_rotation_rad < 1e-3, "{:?}", fit.error);
-            let curve = SymmetricSplitSpline::new(fit.knots.start_ns(), 50_000_000, &fit.control);
+            let curve = SymmetricSplitSpline::from_control_points(
+                fit.knots.start_ns(),
+                50_000_000,
+                &fit.control,
+            );
             let curve = curve.unwrap();
             let (begin, end) = (ends.0.stamp_ns, ends.1.stamp_ns);
             for t_ns in (begin..=end).step_by(10_000_000) {

@@ -49,7 +49,11 @@ pub(super) fn control<F: Form<f64>>(
     }
     let mut before = f64::INFINITY;
     for _ in 0..MOST_ROUNDS {
-        let curve = SplitCurve::<_, _, F>::new(knots.start_ns(), knots.step_ns(), &control)?;
+        let curve = SplitCurve::<_, _, F>::from_control_points(
+            knots.start_ns(),
+            knots.step_ns(),
+            &control,
+        )?;
         let mut largest = 0.0_f64;
         for (at_knot, TimedPose { stamp_ns, pose }) in at_knots.iter_mut().zip(poses) {
             let there = curve.pose(*stamp_ns)?;

@@ -5,7 +5,7 @@ use imu_core::nalgebra::{Quaternion, Vector3};
 use imu_core::se3::Pose;
 use imu_core::spline::{
     Full, Knot, R3Spline, ScrewKnot, Se3Spline, So3Spline, SplitSpline, SymmetricSo3Spline,
-    SymmetricSplitSpline, cache, cache_screws, quasi_interpolant,
+    SymmetricSplitSpline, cache, cache_screws, quasi_interpolant, quasi_interpolant_on_screws,
 };
 use imu_core::trajectory::{Ellipse, Motion, Trajectory};
 use imu_core::{Error, so3};
@@ -34,12 +34,12 @@ fn curves<'a>(
     cache(poses, knots).unwrap();
     cache_screws(poses, screws).unwrap();
     let (knots, screws) = (&*knots, &*screws);
-    let plain = SplitSpline::new(0, H, poses).unwrap();
-    let cached = SplitSpline::new(0, H, knots).unwrap();
-    let symmetric = SymmetricSplitSpline::new(0, H, poses).unwrap();
-    let symmetric_cached = SymmetricSplitSpline::new(0, H, knots).unwrap();
-    let coupled = Se3Spline::new(0, H, poses).unwrap();
-    let coupled_cached = Se3Spline::new(0, H, screws).unwrap();
+    let plain = SplitSpline::from_control_points(0, H, poses).unwrap();
+    let cached = SplitSpline::from_control_points(0, H, knots).unwrap();
+    let symmetric = SymmetricSplitSpline::from_control_points(0, H, poses).unwrap();
+    let symmetric_cached = SymmetricSplitSpline::from_control_points(0, H, knots).unwrap();
+    let coupled = Se3Spline::from_control_points(0, H, poses).unwrap();
+    let coupled_cached = Se3Spline::from_control_points(0, H, screws).unwrap();
     vec![
         ("split", Box::new(move |t| plain.full(t).unwrap())),
         ("split, cached", Box::new(move |t| cached.full(t).unwrap())),
@@ -118,8 +118,8 @@ proptest! {
     fn the_symmetric_curve_runs_either_way(poses in proptest::collection::vec(any_pose(), 4), at in 0..=1_000_000_000_i64) {
         let reversed: Vec<_> = poses.iter().rev().copied().collect();
         let (there, back) = (1_000_000_000 + at, 2_000_000_000 - at);
-        let forwards = SymmetricSplitSpline::new(0, 1_000_000_000, &poses).unwrap();
-        let backwards = SymmetricSplitSpline::new(0, 1_000_000_000, &reversed).unwrap();
+        let forwards = SymmetricSplitSpline::from_control_points(0, 1_000_000_000, &poses).unwrap();
+        let backwards = SymmetricSplitSpline::from_control_points(0, 1_000_000_000, &reversed).unwrap();
         let (a, b) = (forwards.full(there).unwrap(), backwards.full(back).unwrap());
         // Of numbers up to 2 and 12: a few roundings.
         let off = |q: Quaternion<f64>, r: Quaternion<f64>| (q.coords - r.coords).abs().max();
@@ -167,11 +167,11 @@ proptest! {
         let flipped: Vec<_> = points.iter().zip(flips).map(flip).collect();
         let t = 1_400_000_000;
         let h = 1_000_000_000;
-        let a = So3Spline::new(0, h, &points).unwrap().full(t).unwrap();
-        let b = So3Spline::new(0, h, &flipped).unwrap().full(t).unwrap();
+        let a = So3Spline::from_control_points(0, h, &points).unwrap().full(t).unwrap();
+        let b = So3Spline::from_control_points(0, h, &flipped).unwrap().full(t).unwrap();
         prop_assert_eq!((a.angular_rate, a.angular_acceleration), (b.angular_rate, b.angular_acceleration));
-        let a = SymmetricSo3Spline::new(0, h, &points).unwrap().full(t).unwrap();
-        let b = SymmetricSo3Spline::new(0, h, &flipped).unwrap().full(t).unwrap();
+        let a = SymmetricSo3Spline::from_control_points(0, h, &points).unwrap().full(t).unwrap();
+        let b = SymmetricSo3Spline::from_control_points(0, h, &flipped).unwrap().full(t).unwrap();
         prop_assert_eq!((a.angular_rate, a.angular_acceleration), (b.angular_rate, b.angular_acceleration));
     }
 }
@@ -184,11 +184,13 @@ fn every_question_has_one_answer() {
         poses.iter().map(|pose| (pose.rotation(), pose.translation())).unzip();
     let h = 100_000_000;
     let gravity = Vector3::new(0.0, 0.0, -9.81);
-    let split = SplitSpline::new(0, h, &poses).unwrap();
-    let symmetric = SymmetricSplitSpline::new(0, h, &poses).unwrap();
-    let (so3_plain, so3_symmetric) =
-        (So3Spline::new(0, h, &points).unwrap(), SymmetricSo3Spline::new(0, h, &points).unwrap());
-    let r3 = R3Spline::new(0, h, &places).unwrap();
+    let split = SplitSpline::from_control_points(0, h, &poses).unwrap();
+    let symmetric = SymmetricSplitSpline::from_control_points(0, h, &poses).unwrap();
+    let (so3_plain, so3_symmetric) = (
+        So3Spline::from_control_points(0, h, &points).unwrap(),
+        SymmetricSo3Spline::from_control_points(0, h, &points).unwrap(),
+    );
+    let r3 = R3Spline::from_control_points(0, h, &places).unwrap();
     for k in 0..=100 {
         let t = 100_000_000 + k * 9_000_000;
         macro_rules! same {
@@ -236,30 +238,32 @@ fn ellipse(step_ns: i64, count: i64) -> Vec<Pose<f64>> {
 }
 
 /// The slope of log error over log step, by least squares.
-fn order(errors: &[(f64, f64)]) -> f64 {
-    let n = errors.len() as f64;
-    let points: Vec<_> = errors.iter().map(|(h, error)| (h.ln(), error.ln())).collect();
-    let mean = points.iter().map(|(x, _)| x).sum::<f64>() / n;
+pub(super) fn order(errors: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let points: Vec<_> = errors.map(|(h, error)| (h.ln(), error.ln())).collect();
+    let mean = points.iter().map(|(x, _)| x).sum::<f64>() / points.len() as f64;
     let spread: f64 = points.iter().map(|(x, _)| (x - mean).powi(2)).sum();
     points.iter().map(|(x, y)| (x - mean) * y).sum::<f64>() / spread
 }
 
-/// Largest errors of attitude, ω, position and acceleration of a curve of quasi-interpolants of 20 s of the ellipse.
-fn errors(step_ns: i64, symmetric: bool) -> [f64; 4] {
-    let count = 20_000_000_000 / step_ns + 5;
-    let controls: Vec<_> = (0..count)
+/// Control points every step of 20 s of the ellipse and a little more.
+fn controls(
+    step_ns: i64,
+    of_three: fn(&Pose<f64>, &Pose<f64>, &Pose<f64>) -> Result<Pose<f64>, Error>,
+) -> Vec<Pose<f64>> {
+    (0..20_000_000_000 / step_ns + 5)
         .map(|k| {
             let near = [-1, 0, 1].map(|side| pose_at((k + side) * step_ns));
-            quasi_interpolant(&near[0], &near[1], &near[2]).unwrap()
+            of_three(&near[0], &near[1], &near[2]).unwrap()
         })
-        .collect();
-    let step = step_ns as u32;
-    let plain = SplitSpline::new(0, step, &controls).unwrap();
-    let mean = SymmetricSplitSpline::new(0, step, &controls).unwrap();
+        .collect()
+}
+
+/// Largest errors of attitude, ω, position and acceleration of a curve from `step_ns` on over 20 s of the ellipse.
+fn errors(step_ns: i64, curve: impl Fn(i64) -> Result<Full<f64>, Error>) -> [f64; 4] {
     let mut worst = [0.0_f64; 4];
     for k in 0..4000 {
         let t = step_ns + k * 5_000_000 + 1_234_567;
-        let full = if symmetric { mean.full(t).unwrap() } else { plain.full(t).unwrap() };
+        let full = curve(t).unwrap();
         let truth = at(t);
         let acceleration =
             so3::rotate(&truth.attitude_wb, &truth.specific_force) - Vector3::new(0.0, 0.0, 9.81);
@@ -276,23 +280,41 @@ fn errors(step_ns: i64, symmetric: bool) -> [f64; 4] {
     worst
 }
 
-/// The local quasi-interpolant on the classic trajectory: MATHS of the module, to ±0.15.
+/// Orders of [`errors`] over steps of 100 to 12 ms.
+fn orders(errors: impl Fn(i64) -> [f64; 4]) -> [f64; 4] {
+    let errors = [100, 50, 25, 12].map(|ms| (f64::from(ms), errors(i64::from(ms) * 1_000_000)));
+    [0, 1, 2, 3].map(|k| order(errors.iter().map(|(h, e)| (*h, e[k]))))
+}
+
+/// The local quasi-interpolant on the classic trajectory, to ±0.15.
 #[test]
 fn orders_are_those_of_the_formulas() {
-    let orders = |symmetric| {
-        let errors: Vec<_> = [100, 50, 25, 12]
-            .map(|ms| (f64::from(ms), errors(i64::from(ms) * 1_000_000, symmetric)))
-            .into();
-        [0, 1, 2, 3].map(|k| order(&errors.iter().map(|(h, e)| (*h, e[k])).collect::<Vec<_>>()))
+    let split = |step_ns: i64, symmetric: bool| {
+        let points = controls(step_ns, quasi_interpolant);
+        let plain = SplitSpline::from_control_points(0, step_ns as u32, &points).unwrap();
+        let mean = SymmetricSplitSpline::from_control_points(0, step_ns as u32, &points).unwrap();
+        errors(step_ns, |t| if symmetric { mean.full(t) } else { plain.full(t) })
     };
-    let (plain, symmetric) = (orders(false), orders(true));
-    println!("plain {plain:?}, symmetric {symmetric:?}");
-    for (measured, wanted) in plain.into_iter().zip([3.0, 2.0, 4.0, 2.0]) {
-        assert!((measured - wanted).abs() < 0.15, "{plain:?}");
+    let coupled = |step_ns: i64, of_three| {
+        let points = controls(step_ns, of_three);
+        let curve = Se3Spline::from_control_points(0, step_ns as u32, &points).unwrap();
+        errors(step_ns, |t| curve.full(t))
+    };
+    for (name, measured, wanted) in [
+        ("plain", orders(|step| split(step, false)), [3.0, 2.0, 4.0, 2.0]),
+        ("symmetric", orders(|step| split(step, true)), [4.0, 3.0, 4.0, 2.0]),
+    ] {
+        for (measured, wanted) in measured.iter().zip(wanted) {
+            assert!((measured - wanted).abs() < 0.15, "{name}: {measured} of {wanted}");
+        }
     }
-    for (measured, wanted) in symmetric.into_iter().zip([4.0, 3.0, 4.0, 2.0]) {
-        assert!((measured - wanted).abs() < 0.15, "{symmetric:?}");
-    }
+    // On screws what attitudes lack in order (3, and 2 of ω) comes to show in positions as steps become short.
+    let [rotation, rate, position, _] = orders(|step| coupled(step, quasi_interpolant_on_screws));
+    assert!((rotation - 3.0).abs() < 0.15 && (rate - 2.0).abs() < 0.15, "{rotation} {rate}");
+    assert!((2.85..4.15).contains(&position), "{position}");
+    // Made for positions beside attitudes, control points give them order 2.
+    let [_, _, position, _] = orders(|step| coupled(step, quasi_interpolant));
+    assert!((position - 2.0).abs() < 0.15, "{position}");
 }
 
 /// 100 knots a second over 20 m, in f32: differences are rounded to half a unit of at most 0.1 m, 3.7e-9 m, so second
@@ -302,54 +324,69 @@ fn acceleration_in_single_precision() {
     let poses = ellipse(10_000_000, 2003);
     let mut knots = vec![Knot::<f32>::default(); poses.len()];
     cache(&poses, &mut knots).unwrap();
-    let single = SplitSpline::new(0, 10_000_000, &knots).unwrap();
-    let double = SplitSpline::new(0, 10_000_000, &poses).unwrap();
+    let mut screws = vec![ScrewKnot::<f32>::default(); poses.len()];
+    cache_screws(&poses, &mut screws).unwrap();
     let rounded: Vec<Pose<f32>> = poses.iter().map(Pose::cast).collect();
-    let careless = SplitSpline::new(0, 10_000_000, &rounded).unwrap();
-    let (mut worst, mut worst_careless, mut rate, mut angular) =
-        (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
-    for k in 0..20_000 {
-        let t = 10_000_000 + k * 999_983;
-        let (exact, here) = (double.full(t).unwrap(), single.full(t).unwrap());
-        let to_double = |v: Vector3<f32>| v.map(f64::from);
-        worst = worst.max(largest(to_double(here.acceleration_w) - exact.acceleration_w));
-        rate = rate.max(largest(to_double(here.angular_rate) - exact.angular_rate));
-        angular =
-            angular.max(largest(to_double(here.angular_acceleration) - exact.angular_acceleration));
-        let there = careless.full(t).unwrap();
-        worst_careless =
-            worst_careless.max(largest(to_double(there.acceleration_w) - exact.acceleration_w));
+    // The largest errors of a, ω and α of one curve in the two precisions.
+    macro_rules! errors {
+        ($Curve:ident, $single:expr) => {{
+            let single = $Curve::from_control_points(0, 10_000_000, $single).unwrap();
+            let double = $Curve::from_control_points(0, 10_000_000, &poses).unwrap();
+            let mut worst = [0.0_f64; 3];
+            for k in 0..20_000 {
+                let t = 10_000_000 + k * 999_983;
+                let (exact, here) = (double.full(t).unwrap(), single.full(t).unwrap());
+                let off = [
+                    here.acceleration_w.map(f64::from) - exact.acceleration_w,
+                    here.angular_rate.map(f64::from) - exact.angular_rate,
+                    here.angular_acceleration.map(f64::from) - exact.angular_acceleration,
+                ];
+                for (worst, off) in worst.iter_mut().zip(off) {
+                    *worst = worst.max(largest(off));
+                }
+            }
+            println!(
+                "{} f32: a {:e}, ω {:e}, α {:e}",
+                stringify!($Curve),
+                worst[0],
+                worst[1],
+                worst[2]
+            );
+            worst
+        }};
     }
-    println!(
-        "f32: a {worst:e} (of absolute positions {worst_careless:e}), ω {rate:e}, α {angular:e}"
-    );
-    assert!(worst <= 1e-4, "{worst:e}");
-    // Half a unit of turns of 0.004 rad, 2.3e-10, times 10⁴ s⁻² and two of them; and of ω times 10² s⁻¹.
-    assert!(rate <= 2e-7 && angular <= 1e-5, "{rate:e} {angular:e}");
-    assert!(worst_careless > 3e-3);
-}
-
-/// Control poses that are poses: the curve is off by h²/6 of the second derivative, 6.5 cm at 0.2 s.
-#[test]
-fn poses_are_not_control_points() {
-    let poses = ellipse(200_000_000, 105);
-    let raw = SplitSpline::new(0, 200_000_000, &poses).unwrap();
-    let off = |k: i64| {
-        largest(raw.pose(k * 200_000_000).unwrap().translation() - poses[k as usize].translation())
-    };
-    let worst = (1..103).map(off).fold(0.0, f64::max);
-    assert!((0.055..0.075).contains(&worst), "{worst}");
+    for [a, rate, angular] in [errors!(SplitSpline, &knots), errors!(SymmetricSplitSpline, &knots)]
+    {
+        assert!(a <= 1e-4, "{a:e}");
+        // Half a unit of turns of 0.004 rad, 2.3e-10, times 10⁴ s⁻² and two of them; and of ω times 10² s⁻¹.
+        assert!(rate <= 2e-7 && angular <= 1e-5, "{rate:e} {angular:e}");
+    }
+    // On screws velocities turn, too: 10 m/s by roundings of ω, and ω × v, twice.
+    let [a, rate, angular] = errors!(Se3Spline, &screws);
+    assert!(a <= 2e-4 && rate <= 2e-7 && angular <= 1e-5, "{a:e} {rate:e} {angular:e}");
+    // Of absolute positions.
+    let [careless, ..] = errors!(SplitSpline, &rounded);
+    assert!(careless > 3e-3);
 }
 
 #[test]
 fn what_makes_no_curve_is_refused_by_name() {
     let pose = Pose::<f64>::identity();
     let three = [pose; 3];
-    assert_eq!(SplitSpline::new(0, 1000, &three).unwrap_err(), Error::OutOfRange("count"));
-    assert_eq!(Se3Spline::new(0, 1000, &three).unwrap_err(), Error::OutOfRange("count"));
-    assert_eq!(SplitSpline::new(0, 0, &[pose; 4]).unwrap_err(), Error::OutOfRange("step_ns"));
+    assert_eq!(
+        SplitSpline::from_control_points(0, 1000, &three).unwrap_err(),
+        Error::OutOfRange("count")
+    );
+    assert_eq!(
+        Se3Spline::from_control_points(0, 1000, &three).unwrap_err(),
+        Error::OutOfRange("count")
+    );
+    assert_eq!(
+        SplitSpline::from_control_points(0, 0, &[pose; 4]).unwrap_err(),
+        Error::OutOfRange("step_ns")
+    );
     let four = [pose; 4];
-    let late = SplitSpline::new(i64::MAX - 1000, 1000, &four);
+    let late = SplitSpline::from_control_points(i64::MAX - 1000, 1000, &four);
     assert_eq!(late.unwrap_err(), Error::OutOfRange("count"));
 
     let apart = Error::OutOfRange("turn between neighbours");
@@ -357,35 +394,54 @@ fn what_makes_no_curve_is_refused_by_name() {
         let angle = core::f64::consts::PI + beyond;
         let turned = Pose::new(so3::exp(Vector3::new(0.0, angle, 0.0)), Vector3::zeros()).unwrap();
         let four = [pose, pose, turned, pose];
-        assert_eq!(SplitSpline::new(0, 1000, &four).is_err(), refused, "{angle}");
+        assert_eq!(SplitSpline::from_control_points(0, 1000, &four).is_err(), refused, "{angle}");
         if refused {
-            assert_eq!(Se3Spline::new(0, 1000, &four).unwrap_err(), apart);
+            assert_eq!(Se3Spline::from_control_points(0, 1000, &four).unwrap_err(), apart);
             assert_eq!(cache(&four, &mut [Knot::<f32>::default(); 4]).unwrap_err(), apart);
             assert_eq!(quasi_interpolant(&pose, &turned, &pose).unwrap_err(), apart);
             let attitudes = four.map(|pose| pose.rotation());
-            assert_eq!(SymmetricSo3Spline::new(0, 1000, &attitudes).unwrap_err(), apart);
+            assert_eq!(
+                SymmetricSo3Spline::from_control_points(0, 1000, &attitudes).unwrap_err(),
+                apart
+            );
         }
     }
+    // Knots not filled, reversed, or of two curves; and those that are one.
+    let poses = ellipse(10_000_000, 8);
+    let (mut knots, mut screws) = ([Knot::<f32>::default(); 8], [ScrewKnot::<f32>::default(); 8]);
+    let points = Error::OutOfRange("points");
+    for filled in [5, 7, 8] {
+        cache(&poses[..filled], &mut knots[..filled]).unwrap();
+        cache_screws(&poses[..filled], &mut screws[..filled]).unwrap();
+        let whole = filled == 8;
+        assert_eq!(SplitSpline::from_control_points(0, 1000, &knots).is_ok(), whole, "{filled}");
+        assert_eq!(Se3Spline::from_control_points(0, 1000, &screws).is_ok(), whole, "{filled}");
+    }
+    assert_eq!((knots[3].pose(), screws[3].pose()), (poses[3].cast(), poses[3].cast()));
+    knots.reverse();
+    screws.reverse();
+    assert_eq!(SymmetricSplitSpline::from_control_points(0, 1000, &knots).unwrap_err(), points);
+    assert_eq!(Se3Spline::from_control_points(0, 1000, &screws).unwrap_err(), points);
+
     let mut few = [Knot::<f64>::default(); 3];
     assert_eq!(cache(&[pose; 4], &mut few).unwrap_err(), Error::OutOfRange("knots"));
 
-    let points = Error::OutOfRange("points");
     let fine = Quaternion::new(1.0, 0.0, 0.0, 0.0);
     for w in [f64::NAN, 0.0, 1.0 + 1e-12, f64::INFINITY] {
         let four = [fine, Quaternion::new(w, 0.0, 0.0, 0.0), fine, fine];
-        assert_eq!(So3Spline::new(0, 1000, &four).unwrap_err(), points);
+        assert_eq!(So3Spline::from_control_points(0, 1000, &four).unwrap_err(), points);
     }
     for x in [f64::NAN, f64::NEG_INFINITY, 2e9] {
         let four =
             [Vector3::zeros(), Vector3::new(0.0, x, 0.0), Vector3::zeros(), Vector3::zeros()];
-        assert_eq!(R3Spline::new(0, 1000, &four).unwrap_err(), points);
+        assert_eq!(R3Spline::from_control_points(0, 1000, &four).unwrap_err(), points);
     }
 }
 
 #[test]
 fn there_is_no_curve_outside_its_span() {
     let poses = [Pose::<f32>::identity(); 6];
-    let curve = SplitSpline::new(-5000, 1000, &poses).unwrap();
+    let curve = SplitSpline::from_control_points(-5000, 1000, &poses).unwrap();
     assert_eq!(curve.knots().span(), (-4000, -1000));
     for t in [i64::MIN, -5000, -4001, -999, 0, i64::MAX] {
         assert_eq!(curve.pose(t), Err(Error::OutOfRange("t_ns")));
@@ -396,7 +452,7 @@ fn there_is_no_curve_outside_its_span() {
     let jump = [0.0, 0.0, 1.0, 0.0].map(|x| {
         Pose::new(Quaternion::new(1.0, 0.0, 0.0, 0.0), Vector3::new(x, 0.0, 0.0)).unwrap()
     });
-    let curve = SplitSpline::new(0, 1, &jump).unwrap();
+    let curve = SplitSpline::from_control_points(0, 1, &jump).unwrap();
     let felt = curve.imu(1, &Vector3::zeros());
     assert_eq!(felt.unwrap_err(), Error::OutOfRange("specific_force"));
 }

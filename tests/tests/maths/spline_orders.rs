@@ -11,6 +11,8 @@ use imu_core::so3;
 use imu_core::spline::{Form, OneSided, SplitCurve, TimeSymmetric, interpolate};
 use imu_core::trajectory::{Ellipse, Motion, Trajectory};
 
+use super::spline::order;
+
 const SPAN_NS: i64 = 12_000_000_000;
 const STEPS_NS: [u32; 4] = [25_000_000, 12_500_000, 6_250_000, 3_125_000];
 
@@ -28,7 +30,7 @@ type Errors = [f64; 5];
 
 /// The largest errors of a curve from `start_ns` on at instants within the span.
 fn errors<F: Form<f64>>(start_ns: i64, step_ns: u32, control: &[Pose<f64>]) -> Errors {
-    let curve = SplitCurve::<_, _, F>::new(start_ns, step_ns, control).unwrap();
+    let curve = SplitCurve::<_, _, F>::from_control_points(start_ns, step_ns, control).unwrap();
     let mut largest = [0.0_f64; 5];
     for k in 0..SPAN_NS / i64::from(step_ns) * 8 {
         let t_ns = (2 * k + 1) * i64::from(step_ns) / 16;
@@ -58,7 +60,7 @@ fn interpolated<F: Form<f64>>(step_ns: u32) -> Vec<Pose<f64>> {
     let mut control = vec![Pose::identity(); poses.len() + 2];
     interpolate::<_, F>(&poses, &mut control, &mut vec![Vector3::zeros(); poses.len()]).unwrap();
     // Through the poses themselves: 25 m and unit quaternions to 1e-12.
-    let curve = SplitCurve::<_, _, F>::new(-step, step_ns, &control).unwrap();
+    let curve = SplitCurve::<_, _, F>::from_control_points(-step, step_ns, &control).unwrap();
     for (k, pose) in (0..).zip(&poses) {
         let there = curve.pose(k * step).unwrap();
         assert!(norm(there.translation() - pose.translation()) <= 1e-12);
@@ -72,20 +74,10 @@ fn of_step<F: Form<f64>>(step_ns: u32) -> Errors {
     errors::<F>(-i64::from(step_ns), step_ns, &interpolated::<F>(step_ns))
 }
 
-/// The slope of a straight line through (ln h, ln error), by least squares.
-fn order(errors: &[Errors; 4], which: usize) -> f64 {
-    let points = STEPS_NS.iter().zip(errors).map(|(h, e)| (f64::from(*h).ln(), e[which].ln()));
-    let (xs, ys): (Vec<_>, Vec<_>) = points.unzip();
-    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-    let (x, y) = (mean(&xs), mean(&ys));
-    let above: f64 = xs.iter().zip(&ys).map(|(a, b)| (a - x) * (b - y)).sum();
-    above / xs.iter().map(|a| (a - x) * (a - x)).sum::<f64>()
-}
-
 fn has_orders<F: Form<f64>>(name: &str, orders: [f64; 5]) -> [Errors; 4] {
     let errors = STEPS_NS.map(of_step::<F>);
     for (which, expected) in orders.into_iter().enumerate() {
-        let measured = order(&errors, which);
+        let measured = order(STEPS_NS.iter().zip(&errors).map(|(h, e)| (f64::from(*h), e[which])));
         assert!((measured - expected).abs() <= 0.15, "{name} {which}: {measured} of {expected}");
     }
     errors

@@ -1,9 +1,9 @@
 //! The curves that are compared: of which form, through what control points, in which numbers, cached or not.
 
-use imu_core::se3::{self, Pose, Twist};
+use imu_core::se3::Pose;
 use imu_core::spline::{
     Full, Knot, OneSided, ScrewKnot, Se3Spline, SplitSpline, SymmetricSplitSpline, TimeSymmetric,
-    cache, cache_screws, interpolate, quasi_interpolant,
+    cache, cache_screws, interpolate, quasi_interpolant, quasi_interpolant_on_screws,
 };
 use imu_core::{Error, Real, nalgebra::Vector3};
 
@@ -126,15 +126,16 @@ impl Poses {
         };
         let poses = match (control, form) {
             (Control::PosesThemselves, _) => inner(&self.all, BEYOND - 1),
-            (Control::QuasiInterpolant, Form::Coupled) => {
-                self.all.windows(3).filter_map(<[_]>::first_chunk).map(on_screws).collect()
+            (Control::QuasiInterpolant, form) => {
+                let of_three = match form {
+                    Form::Coupled => quasi_interpolant_on_screws,
+                    Form::Plain | Form::Symmetric => quasi_interpolant,
+                };
+                let threes = self.all.windows(3).filter_map(<[_]>::first_chunk);
+                threes
+                    .map(|[before, at, after]| of_three(before, at, after))
+                    .collect::<Result<_, _>>()?
             }
-            (Control::QuasiInterpolant, _) => self
-                .all
-                .windows(3)
-                .filter_map(<[_]>::first_chunk)
-                .map(|[before, at, after]| quasi_interpolant(before, at, after))
-                .collect::<Result<_, _>>()?,
             (Control::Interpolation, _) => {
                 let through = inner(&self.all, BEYOND);
                 let mut control = vec![Pose::identity(); through.len() + 2];
@@ -154,13 +155,6 @@ impl Poses {
             poses,
         })
     }
-}
-
-/// The quasi-interpolant of the core with the logarithm of SE(3) in place of that of SO(3) × R³.
-fn on_screws([before, at, after]: &[Pose<f64>; 3]) -> Pose<f64> {
-    let to = |other: &Pose<f64>| se3::log(&at.inverse().then(other));
-    let bend: Twist<f64> = to(after) + to(before);
-    at.then(&se3::exp(&(bend * (-1.0 / 6.0))))
 }
 
 /// Control points and their instants.
@@ -246,27 +240,27 @@ impl Stored {
         let (start, step) = (self.start_ns, self.step_ns);
         match (curves, self.form) {
             (Curves::Poses(points), Form::Plain) => {
-                let curve = SplitSpline::new(start, step, points)?;
+                let curve = SplitSpline::from_control_points(start, step, points)?;
                 user.with(|t| curve.full(t))
             }
             (Curves::Poses(points), Form::Symmetric) => {
-                let curve = SymmetricSplitSpline::new(start, step, points)?;
+                let curve = SymmetricSplitSpline::from_control_points(start, step, points)?;
                 user.with(|t| curve.full(t))
             }
             (Curves::Poses(points), Form::Coupled) => {
-                let curve = Se3Spline::new(start, step, points)?;
+                let curve = Se3Spline::from_control_points(start, step, points)?;
                 user.with(|t| curve.full(t))
             }
             (Curves::Knots(points), Form::Symmetric) => {
-                let curve = SymmetricSplitSpline::new(start, step, points)?;
+                let curve = SymmetricSplitSpline::from_control_points(start, step, points)?;
                 user.with(|t| curve.full(t))
             }
             (Curves::Knots(points), _) => {
-                let curve = SplitSpline::new(start, step, points)?;
+                let curve = SplitSpline::from_control_points(start, step, points)?;
                 user.with(|t| curve.full(t))
             }
             (Curves::Screws(points), _) => {
-                let curve = Se3Spline::new(start, step, points)?;
+                let curve = Se3Spline::from_control_points(start, step, points)?;
                 user.with(|t| curve.full(t))
             }
         }

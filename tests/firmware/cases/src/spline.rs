@@ -10,7 +10,7 @@ use imu_core::se3::{self, Pose, Twist};
 use imu_core::spline::{
     Full, Knot, PoseAndVelocity, R3Spline, ScrewKnot, Se3Spline, So3Spline, SplitSpline, Stream,
     SymmetricSo3Spline, SymmetricSplitSpline, cache, cache_screws, double, quasi_interpolant,
-    single,
+    quasi_interpolant_on_screws, single,
 };
 use imu_core::trajectory::{AlongSpline, Motion, Trajectory};
 use imu_core::{Error, Real, so3};
@@ -49,17 +49,23 @@ macro_rules! bits {
             let (mut knots, mut screws) = ([Knot::default(); COUNT], [ScrewKnot::default(); COUNT]);
             $report.flag(cache(&poses, &mut knots).is_ok());
             $report.flag(cache_screws(&poses, &mut screws).is_ok());
+            knots.reverse();
+            screws.reverse();
+            $report.flag(SplitSpline::from_control_points(START, STEP, &knots).is_ok());
+            $report.flag(Se3Spline::from_control_points(START, STEP, &screws).is_ok());
+            knots.reverse();
+            screws.reverse();
             let (Ok(split), Ok(symmetric), Ok(se3)) = (
-                SplitSpline::new(START, STEP, &poses),
-                SymmetricSplitSpline::new(START, STEP, &poses),
-                Se3Spline::new(START, STEP, &poses),
+                SplitSpline::from_control_points(START, STEP, &poses),
+                SymmetricSplitSpline::from_control_points(START, STEP, &poses),
+                Se3Spline::from_control_points(START, STEP, &poses),
             ) else {
                 return $report.flag(false);
             };
             let (Ok(cached), Ok(cached_symmetric), Ok(cached_se3)) = (
-                SplitSpline::new(START, STEP, &knots),
-                SymmetricSplitSpline::new(START, STEP, &knots),
-                Se3Spline::new(START, STEP, &screws),
+                SplitSpline::from_control_points(START, STEP, &knots),
+                SymmetricSplitSpline::from_control_points(START, STEP, &knots),
+                Se3Spline::from_control_points(START, STEP, &screws),
             ) else {
                 return $report.flag(false);
             };
@@ -107,7 +113,7 @@ pub fn case_in_single(report: &mut dyn Report) {
 pub fn case_in_double(report: &mut dyn Report) {
     bits!(report, f64, double);
     let poses = poses::<f64>(black_box(0.05));
-    let Ok(curve) = SymmetricSplitSpline::new(START, STEP, &poses) else {
+    let Ok(curve) = SymmetricSplitSpline::from_control_points(START, STEP, &poses) else {
         return report.flag(false);
     };
     let along = AlongSpline::new(curve);
@@ -129,9 +135,9 @@ fn apart<T: Real>(report: &mut dyn Report) {
     let attitudes = poses
         .map(|pose| Pose::new(pose.rotation(), pose.translation()).unwrap_or_default().rotation());
     let (Ok(r3), Ok(plain), Ok(symmetric)) = (
-        R3Spline::new(START, STEP, &points),
-        So3Spline::new(START, STEP, &attitudes),
-        SymmetricSo3Spline::new(START, STEP, &attitudes),
+        R3Spline::from_control_points(START, STEP, &points),
+        So3Spline::from_control_points(START, STEP, &attitudes),
+        SymmetricSo3Spline::from_control_points(START, STEP, &attitudes),
     ) else {
         return report.flag(false);
     };
@@ -159,14 +165,17 @@ fn apart<T: Real>(report: &mut dyn Report) {
         let w = T::from_f64(black_box(bad));
         let q = Quaternion::new(w, T::ZERO, T::ZERO, T::ZERO);
         report.flag(Pose::new(q, Vector3::from([T::ZERO; 3])).is_ok());
-        report.flag(So3Spline::new(START, STEP, &[q; 4]).is_ok());
-        report.flag(R3Spline::new(START, STEP, &[Vector3::from([w; 3]); 4]).is_ok());
+        report.flag(So3Spline::from_control_points(START, STEP, &[q; 4]).is_ok());
+        report
+            .flag(R3Spline::from_control_points(START, STEP, &[Vector3::from([w; 3]); 4]).is_ok());
     }
     let half_turn = Quaternion::new(T::ZERO, T::ONE, T::ZERO, T::ZERO);
     let level = Quaternion::new(T::ONE, T::ZERO, T::ZERO, T::ZERO);
-    report.flag(So3Spline::new(START, STEP, &[level, half_turn, level, level]).is_ok());
-    report.flag(R3Spline::new(black_box(i64::MAX), STEP, &points).is_ok());
-    report.flag(R3Spline::new(START, black_box(0), &points).is_ok());
+    report.flag(
+        So3Spline::from_control_points(START, STEP, &[level, half_turn, level, level]).is_ok(),
+    );
+    report.flag(R3Spline::from_control_points(black_box(i64::MAX), STEP, &points).is_ok());
+    report.flag(R3Spline::from_control_points(START, black_box(0), &points).is_ok());
 }
 
 /// Pose by pose, of double precision.
@@ -186,6 +195,7 @@ fn streamed<T: Real>(report: &mut dyn Report) {
     report.flag(stream.one_sided().is_some());
     let [first, second, third, ..] = poses;
     pose(report, quasi_interpolant(&first, &second, &third));
+    pose(report, quasi_interpolant_on_screws(&first, &second, &third));
 }
 
 /// Exponentials, logarithms, Jacobians and adjoints.
@@ -289,10 +299,10 @@ macro_rules! cost {
             report.flag(cache(&poses, &mut knots).is_ok());
             report.flag(cache_screws(&poses, &mut screws).is_ok());
             let (Ok(cached), Ok(uncached), Ok(symmetric), Ok(se3)) = (
-                SplitSpline::new(START, STEP, &knots),
-                SplitSpline::new(START, STEP, &poses),
-                SymmetricSplitSpline::new(START, STEP, &knots),
-                Se3Spline::new(START, STEP, &screws),
+                SplitSpline::from_control_points(START, STEP, &knots),
+                SplitSpline::from_control_points(START, STEP, &poses),
+                SymmetricSplitSpline::from_control_points(START, STEP, &knots),
+                Se3Spline::from_control_points(START, STEP, &screws),
             ) else {
                 return report.flag(false);
             };
