@@ -1,5 +1,7 @@
 //! A progress bar on a terminal, and silence anywhere else.
 
+use std::time::Duration;
+
 use indicatif::{ProgressBar, ProgressFinish, ProgressStyle};
 
 /// A bar on the standard error towards `total` samples; it draws nothing unless that is a terminal,
@@ -11,6 +13,15 @@ pub(super) fn bar(total: u64, doing: &'static str) -> ProgressBar {
     .unwrap_or_else(|_| ProgressStyle::default_bar());
     let clear = ProgressFinish::AndClear;
     ProgressBar::new(total).with_style(style).with_message(doing).with_finish(clear)
+}
+
+/// Something that turns, for work whose length nobody knows.
+pub(super) fn turning(doing: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {spinner} {elapsed}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    let turning = ProgressBar::new_spinner().with_style(style).with_message(doing);
+    turning.enable_steady_tick(Duration::from_millis(200));
+    turning.with_finish(ProgressFinish::AndClear)
 }
 
 /// The same for records.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use clap::{Args, Subcommand};
 
 use super::play::{Played, Targets, say_notes};
+use super::progress;
 use super::same_target;
 use crate::error::Error;
 use crate::output::Output;
@@ -28,7 +29,7 @@ Examples:
 const FORMS: &str = "\
 A curve is a uniform cubic B-spline, position and attitude apart. Its form is that of the attitudes: `plain` is the
 cumulative product of the literature, of order 3 in the time between knots; `symmetric` is the same seen from either
-end, of order 4, at 2.6 times the price. The same control points give two curves, so the form is a choice, and stands in
+end, of order 4, at about twice the price. The same control points give two curves, so the form is a choice, and stands in
 the file.";
 
 /// A smooth curve through poses, its derivatives, and IMU data along it.
@@ -52,7 +53,7 @@ struct How {
     /// Which curve of attitudes: plain or symmetric
     #[arg(long, value_name = "FORM", default_value = "plain")]
     form: FormName,
-    /// Seconds between knots [default: the median time between poses]
+    /// Seconds between knots: the nearest equal part of the whole is taken [default: as the poses]
     #[arg(long, value_name = "SECONDS", conflicts_with = "within", allow_negative_numbers = true)]
     spacing: Option<f64>,
     /// Knots as far apart as they can be with no pose further than this from the curve, such as 5mm,0.1deg
@@ -75,7 +76,9 @@ impl How {
     }
 
     fn open(&self, path: &Path) -> Result<Route, Error> {
-        Route::open(path, &self.options()?)
+        let options = self.options()?;
+        let _turning = progress::turning("fitting");
+        Route::open(path, &options)
     }
 }
 
@@ -172,13 +175,15 @@ impl Fit {
     fn run(self) -> Result<(), Error> {
         let options = self.how.options()?;
         self.check_targets()?;
+        let turning = progress::turning("fitting");
         let fitted = Fitted::to(&self.poses, &options)?;
+        turning.finish_and_clear();
         let mut files = vec![file::write(&self.output, &fitted.fit)?];
         if let Some(folder) = &self.plots {
             std::fs::create_dir_all(folder).map_err(|e| Error::io("make the folder", folder, e))?;
-            let outline = fitted.outline()?;
+            let outline = &fitted.outline;
             let [curve, residual] =
-                [report::plot::curve(&outline), report::plot::curve_residual(&outline)];
+                [report::plot::curve(outline), report::plot::curve_residual(outline)];
             let pictures = [
                 curve.svg().into_bytes(),
                 curve.png()?,
@@ -258,6 +263,13 @@ impl Imu {
             (self.file != Path::new("-")).then_some((self.file.as_path(), "the trajectory itself")),
         )?;
         let route = Arc::new(self.how.open(&self.file)?);
+        if route.span_ns().0 < 0 {
+            return Err(Error::data(format!(
+                "{} begins {} s before 1970, from where recordings count: add seconds to its stamps",
+                self.file.display(),
+                route.span_ns().0.unsigned_abs() as f64 / 1e9
+            )));
+        }
         let mut scene = Scene { gravity: self.gravity, ..Scene::along(route, rate, self.samples) };
         if scene.duration_ns == 0 {
             return Err(Error::usage(format!(

@@ -248,6 +248,15 @@ impl Input {
     }
 }
 
+impl Read for Input {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        self.fill(1).map_err(io::Error::other)?;
+        let count = self.at_hand().read(to)?;
+        self.consume(count);
+        Ok(count)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -72,7 +72,7 @@ pub use units::{ForceUnit, RateUnit, TimeUnit};
 
 use crate::error::Error;
 use crate::output::Output;
-use input::Input;
+pub(crate) use input::Input;
 use poses::{Pose, PoseTopic};
 
 /// One reading of one three-axis sensor.
@@ -362,6 +362,11 @@ fn recognise(mut input: Input, options: &ReadOptions) -> Result<Box<dyn Source>,
 /// Whether these first bytes are text: there are no control characters but those of lines.
 fn is_text(start: &[u8]) -> bool {
     !start.iter().any(|b| b.is_ascii_control() && !matches!(b, b'\t' | b'\n' | b'\r' | 0x0c))
+}
+
+/// The bytes of a file or of the pipe `-`, with what they are packed in taken off.
+pub(crate) fn unpacked(path: &Path) -> Result<Input, Error> {
+    Ok(unpack::unpack(Input::open(path)?)?.0)
 }
 
 /// Starts a recording at `path`, in the format that its name says; `-` is a CSV on a pipe.

@@ -7,7 +7,9 @@
 //! 1.4e6 m/s¹⁰, and the error below 4e-14 m/s²; of the rates, and of a lever arm of metres, below that.
 //! A curve through poses is smooth only between its knots: pieces end there, too.
 
+use imu_core::nalgebra::Vector3;
 use imu_core::sensor::{Kinematics, LeverArm, Placement};
+use imu_core::so3;
 use imu_core::trajectory::{Ellipse, Motion, Rest, Trajectory};
 
 use super::{Path, Scene};
@@ -51,6 +53,19 @@ impl Arms {
 
     pub(super) fn are_zero(&self) -> bool {
         self.gyroscope.is_none() && self.accelerometer.is_none()
+    }
+
+    /// The motion of the accelerometer, where that of the point is known and what is felt.
+    fn motion_there(&self, motion: Motion<f64>, felt: impl FnOnce() -> Felt) -> Motion<f64> {
+        let Some(LeverArm { arm }) = self.accelerometer else { return motion };
+        let arm = Vector3::from(arm);
+        let to_world = |v: &Vector3<f64>| so3::rotate(&motion.attitude_wb, v);
+        Motion {
+            position_w: motion.position_w + to_world(&arm),
+            velocity_w: motion.velocity_w + to_world(&motion.angular_rate.cross(&arm)),
+            specific_force: felt().at_accelerometer.into(),
+            ..motion
+        }
     }
 
     pub(super) fn of_accelerometer(&self) -> bool {
@@ -98,6 +113,11 @@ impl Played {
             Path::Ellipse => Ellipse { gravity }.at(t_ns),
             Path::Along(route) => route.motion(gravity, self.start_ns.saturating_add(t_ns)),
         }
+    }
+
+    /// The same of the accelerometer.
+    pub(super) fn motion_of_accelerometer(&self, arms: &Arms, t_ns: i64) -> Motion<f64> {
+        arms.motion_there(self.motion(t_ns), || self.felt(arms, t_ns))
     }
 
     fn kinematics(&self, t_ns: i64, offset_s: f64) -> Kinematics<f64> {

@@ -36,9 +36,9 @@ impl Layer {
         self.read(0)
     }
 
-    /// The motion `t_ns` after the start.
+    /// The motion of the accelerometer `t_ns` after the start.
     pub(super) fn motion(&self, t_ns: i64) -> Motion<f64> {
-        self.played.motion(t_ns)
+        self.played.motion_of_accelerometer(&self.arms, t_ns)
     }
 
     fn felt(&self, t_ns: i64) -> Felt {

@@ -22,7 +22,7 @@ pub struct Truth {
     pub times_ns: Vec<i64>,
     /// Its stamp in the recording; `None` for a sample that was lost.
     pub stamps_ns: Vec<Option<i64>>,
-    /// The motion at that time.
+    /// The motion of the accelerometer at that time.
     pub motions: Vec<Motion<f64>>,
     /// The temperature then, °C, where the scene has one.
     pub celsius: Vec<f64>,

@@ -1,8 +1,8 @@
 //! The truth beside a simulated recording, as a CSV with a line for each sample.
 //!
 //! Columns: true time; the stamp in the recording, empty where the sample was lost, if the scene's clock
-//! errs; position and attitude (q_wb, Hamilton, w first); velocity; true angular rate and
-//! specific force in body axes, at that instant; the bias that each axis of both sensors carries; the
+//! errs; position of the accelerometer (where its lever arm leads) and attitude (q_wb, Hamilton, w first); its
+//! velocity; true angular rate and specific force in body axes, at that instant; the bias that each axis of both sensors carries; the
 //! temperature, if the scene has one. The header names the units. Numbers are the shortest decimals that
 //! read back to the same double.
 

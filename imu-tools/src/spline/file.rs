@@ -16,18 +16,20 @@
 //! the body's axes to the world's, Hamilton, w first. Numbers are the shortest decimals that read back to the same
 //! double, so a curve is read as it was written, bit for bit.
 
-use std::fs::File;
-use std::io::{BufRead as _, BufReader, Read as _};
+use std::io::{BufRead, BufReader, Read as _};
 use std::path::Path;
 
 use imu_core::nalgebra::{Quaternion, Vector3};
 use imu_core::se3::Pose;
 use imu_core::spline::Knots;
 
-use super::{Fit, FormName, Route};
+use super::{Fit, FormName, Given, Route};
 use crate::error::Error;
 use crate::output::Output;
+use crate::recording::{self, poses::Poses};
 
+/// What some programs put before a text.
+const BOM: &[u8] = b"\xef\xbb\xbf";
 /// What a file begins with.
 const MAGIC: &str = "# imu spline ";
 /// The version that is read and written.
@@ -74,24 +76,39 @@ pub fn write(path: &Path, fit: &Fit) -> Result<Output, Error> {
     Ok(output)
 }
 
-/// The curve in a file; none where the file is another.
+/// A file that was opened: a curve, or poses that make one.
+pub(super) enum Opened {
+    Curve(Route),
+    Poses(Given),
+}
+
+/// Opens the file, or the pipe `-`, plain or compressed.
 ///
 /// # Errors
-/// When it is such a file and cannot be read, with the line.
-pub(super) fn read(path: &Path) -> Result<Option<Route>, Error> {
-    if !path.is_file() {
-        return Ok(None);
+/// When it cannot be read, with the line where there is one.
+pub(super) fn open(path: &Path) -> Result<Opened, Error> {
+    let name = if path == Path::new("-") { "the pipe".into() } else { path.display().to_string() };
+    let mut input = recording::unpacked(path)?;
+    input.fill(BOM.len() + MAGIC.len())?;
+    if input.at_hand().starts_with(BOM) {
+        input.consume(BOM.len());
     }
-    let refused = |source| Error::io("read", path, source);
-    let mut lines = BufReader::new(File::open(path).map_err(refused)?);
-    let mut magic = Vec::new();
-    lines.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(refused)?;
-    if magic != MAGIC.as_bytes() {
-        return Ok(None);
+    if input.at_hand().starts_with(MAGIC.as_bytes()) {
+        read(&name, BufReader::new(input)).map(Opened::Curve)
+    } else {
+        Given::of(name, Poses::of(input)?).map(Opened::Poses)
     }
-    let mut rows = Rows { path, lines, line: 0, text: String::new(), is_whole: true };
+}
+
+/// The curve in the lines of a file; errors call it `name`.
+///
+/// # Errors
+/// When they make no curve, with the line.
+pub fn read(name: &str, lines: impl BufRead) -> Result<Route, Error> {
+    let mut rows = Rows { name, lines, line: 0, text: String::new(), is_whole: true };
     rows.next()?;
-    if rows.text.split(':').next() != Some(VERSION) {
+    let version = rows.text.strip_prefix(MAGIC).and_then(|rest| rest.split(':').next());
+    if version != Some(VERSION) {
         return Err(rows.wrong("a curve of another version; this program reads version 1"));
     }
     let form = rows.field("form")?.parse();
@@ -109,50 +126,52 @@ pub(super) fn read(path: &Path) -> Result<Option<Route>, Error> {
     }
     let mut control = Vec::new();
     while rows.next()? {
+        if rows.text.is_empty() {
+            continue;
+        }
         control.push(rows.pose().ok_or_else(|| rows.wrong("this is no control point"))?);
     }
     if !rows.is_whole || control.len() != count {
         return Err(Error::data(format!(
-            "{} is cut off or was changed: it holds {} of {count} control points",
-            path.display(),
+            "{name} is cut off or was changed: it holds {} of {count} control points",
             control.len()
         )));
     }
     let of_curve = |_| {
         Error::data(format!(
-            "{}: its control points make no curve: fewer than four, times that do not fit, or neighbours half a turn apart",
-            path.display()
+            "{name}: its control points make no curve: fewer than four, times that do not fit, or neighbours half a \
+             turn apart"
         ))
     };
     let knots = Knots::new(start_ns, step_ns, control.len()).map_err(of_curve)?;
     let span_ns = (knots.span().0, end_ns);
-    Route::new(form, knots, span_ns, &control, Vec::new()).map(Some).map_err(of_curve)
+    Route::new(form, knots, span_ns, &control, Vec::new()).map_err(of_curve)
 }
 
 /// The lines of a file.
-struct Rows<'a> {
-    path: &'a Path,
-    lines: BufReader<File>,
+struct Rows<'a, R> {
+    name: &'a str,
+    lines: R,
     line: u64,
     text: String,
     /// The last line had its end.
     is_whole: bool,
 }
 
-impl Rows<'_> {
+impl<R: BufRead> Rows<'_, R> {
     /// The next line, without its end; `false` behind the last.
     fn next(&mut self) -> Result<bool, Error> {
         self.line += 1;
         self.text.clear();
-        let read = self.lines.by_ref().take(LONGEST_LINE).read_line(&mut self.text);
-        let count = read.map_err(|source| Error::io("read", self.path, source))?;
+        let read = (&mut self.lines).take(LONGEST_LINE).read_line(&mut self.text);
+        let count = read.map_err(|source| Error::io("read", Path::new(self.name), source))?;
         self.is_whole = count == 0 && self.is_whole || self.text.ends_with('\n');
         self.text.truncate(self.text.trim_end().len());
         Ok(count > 0)
     }
 
     fn wrong(&self, sentence: &str) -> Error {
-        Error::data(format!("{}, line {}: {sentence}", self.path.display(), self.line))
+        Error::data(format!("{}, line {}: {sentence}", self.name, self.line))
     }
 
     /// What the next line, `# KEY: VALUE`, says.

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use imu_core::trajectory::GRAVITY;
 
-use super::{Choice, Fit, Given, Options, Outline, Route, TimedPose, choices, file, fit, order};
+use super::file::{self, Opened};
+use super::{Choice, Fit, Given, Options, Outline, TimedPose, choices, fit};
 use crate::error::Error;
 use crate::recording::Note;
 
@@ -23,6 +24,8 @@ pub struct Fitted {
     pub mean_force: [f64; 3],
     /// The curve.
     pub fit: Fit,
+    /// What there is to draw of it.
+    pub outline: Outline,
     /// This one and its alternatives.
     pub choices: Vec<Choice>,
 }
@@ -33,36 +36,29 @@ impl Fitted {
     /// # Errors
     /// When the file cannot be read or no curve comes of it, in one sentence.
     pub fn to(path: &Path, options: &Options) -> Result<Self, Error> {
-        if file::read(path)?.is_some() {
-            return Err(Error::data(format!(
-                "{} is a curve already: sample it with imu spline sample, or give poses",
-                path.display()
-            )));
-        }
-        let given = Given::read(path)?;
+        let given = match file::open(path)? {
+            Opened::Poses(given) => given,
+            Opened::Curve(_) => {
+                return Err(Error::data(format!(
+                    "{} is a curve already: sample it with imu spline sample, or give poses",
+                    path.display()
+                )));
+            }
+        };
         let span_s = given.span_s();
         let Given { poses, notes } = given;
         let fit = fit(&poses, options).map_err(|error| no_curve(path, error))?;
+        let route = fit.route().map_err(|error| no_curve(path, error))?;
         Ok(Self {
             path: path.display().to_string(),
             span_s,
             notes,
-            mean_force: order::mean_vertical(&poses).map(|part| GRAVITY * part),
+            mean_force: route.mean_specific_force(GRAVITY),
             choices: choices(&poses, options, &fit),
+            outline: Outline::of(&route, &poses),
             poses,
             fit,
         })
-    }
-
-    /// What there is to draw.
-    ///
-    /// # Errors
-    /// None, of a fit.
-    pub fn outline(&self) -> Result<Outline, Error> {
-        let Fit { form, knots, span_ns, control, .. } = &self.fit;
-        let route = Route::new(*form, *knots, *span_ns, control, Vec::new());
-        let route = route.map_err(|error| no_curve(Path::new(&self.path), error))?;
-        Ok(Outline::of(&route, &self.poses))
     }
 }
 

@@ -44,7 +44,6 @@ pub use choices::{Choice, choices};
 pub use distance::Distance;
 pub use fitted::Fitted;
 pub use jitter::{Jitter, JitterOfCurve};
-pub use order::mean_vertical;
 pub use outline::Outline;
 pub use poses::Given;
 pub use route::Route;
@@ -157,6 +156,17 @@ pub struct Fit {
     pub jitter: Option<JitterOfCurve>,
 }
 
+impl Fit {
+    /// The curve itself, as a file of it would be read.
+    ///
+    /// # Errors
+    /// As of [`Route::new`]; none of what [`fit`] made.
+    pub fn route(&self) -> Result<Route, imu_core::Error> {
+        let control: Vec<_> = self.control.iter().copied().map(file::settled).collect();
+        Route::new(self.form, self.knots, self.span_ns, &control, Vec::new())
+    }
+}
+
 /// Fits a curve to poses in the order of their stamps.
 ///
 /// # Errors
@@ -180,13 +190,17 @@ fn fit_every<F: Form<f64>>(
     options: &Options,
     step_ns: u32,
 ) -> Result<Fit, FitError> {
-    let interpolates = options.smoothing_s == 0.0 && through::are_near(poses, step_ns);
     let knots = spacing::knots(poses, step_ns)?;
+    let through = match options.smoothing_s == 0.0 && through::are_near(poses, step_ns) {
+        true => through::control::<F>(poses, &knots)?,
+        false => None,
+    };
+    let interpolates = through.is_some();
     let undecided = FitError::Undecided(f64::from(step_ns) / 1e9);
     let held = bridge::bridged(poses, step_ns);
     let solver = LeastSquares::new(&held, &knots, options.smoothing_s).ok_or(undecided)?;
-    let control = if interpolates {
-        through::control::<F>(poses, &knots)?
+    let control = if let Some(control) = through {
+        control
     } else {
         // From the first pose: the digits of a place far from home would be lost where little decides.
         let home = poses[0].pose.translation();

@@ -17,12 +17,7 @@ const STEADIER: f64 = 0.2;
 /// … and does stray there.
 const UNSTEADY: f64 = 0.98;
 
-/// The mean over poses of the world's vertical in body axes: times g, what an accelerometer reads on average.
-#[must_use]
-pub fn mean_vertical(poses: &[TimedPose]) -> [f64; 3] {
-    vertical(poses, |q| q).into()
-}
-
+/// The mean over poses of the world's vertical in body axes: times g, what an accelerometer reads of gravity.
 fn vertical(
     poses: &[TimedPose],
     read: impl Fn(Quaternion<f64>) -> Quaternion<f64>,

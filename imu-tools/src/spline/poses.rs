@@ -15,7 +15,7 @@ use super::distance::between;
 use super::{FEWEST_POSES, TimedPose, order};
 use crate::error::Error;
 use crate::recording::Note;
-use crate::recording::poses::{self, Poses};
+use crate::recording::poses::{Pose as Row, Poses};
 
 /// Off from unit length by more than what six decimals leave, a quaternion is told of.
 const ROUNDED: f64 = 5e-6;
@@ -43,9 +43,13 @@ impl Given {
     /// # Errors
     /// One sentence, with the line where there is one, for what makes no curve.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let mut poses = Poses::open(path)?;
         let name =
             if path == Path::new("-") { "the pipe".into() } else { path.display().to_string() };
+        Self::of(name, Poses::open(path)?)
+    }
+
+    /// The same of a table that is open; errors call it `name`.
+    pub(super) fn of(name: String, mut poses: Poses) -> Result<Self, Error> {
         let mut taken = Taken { name, ..Taken::default() };
         while let Some(pose) = poses.next_pose()? {
             taken.take(&pose, poses.line().unwrap_or(0))?;
@@ -93,7 +97,7 @@ struct Taken {
 }
 
 impl Taken {
-    fn take(&mut self, given: &poses::Pose, line: u64) -> Result<(), Error> {
+    fn take(&mut self, given: &Row, line: u64) -> Result<(), Error> {
         let at = |sentence: String| Error::data(format!("{}, line {line}: {sentence}", self.name));
         let ([x, y, z], [qx, qy, qz, qw]) = (given.position, given.orientation);
         if ![x, y, z, qx, qy, qz, qw].iter().all(|number| number.is_finite()) {
@@ -151,7 +155,7 @@ impl Taken {
     fn given(self) -> Result<Given, Error> {
         let count = self.poses.len();
         if count < FEWEST_POSES {
-            let poses = if count == 1 { "pose" } else { "poses" };
+            let poses = poses(count as u64);
             return Err(Error::data(format!(
                 "{} holds {count} {poses} of different instants, and a curve needs {FEWEST_POSES} or more",
                 self.name
@@ -159,31 +163,34 @@ impl Taken {
         }
         let mut notes = Vec::new();
         if self.repeated > 0 {
-            notes.push(Note::Info(format!(
-                "{} poses are there twice, and taken once",
-                self.repeated
-            )));
+            notes.push(Note::Info(match self.repeated {
+                1 => "a pose is there twice, and taken once".into(),
+                count => format!("{count} poses are there twice, and taken once"),
+            }));
         }
         let mut warn = |sentence| notes.push(Note::Warning(sentence));
         let Tally { count, first_line, most } = self.renormalised;
         if count > 0 {
             warn(format!(
-                "{count} quaternions are not of unit length, by up to {most:.1e} (the first in line {first_line}): \
-                 made so"
+                "quaternions of {count} {} are not of unit length, by up to {most:.1e} (the first in line \
+                 {first_line}): made so",
+                poses(count)
             ));
         }
         let Tally { count, first_line, most } = self.contradicting;
         if count > 0 {
             warn(format!(
-                "{count} poses have the stamp of the one above and say another thing, by up to {most:.3} m (the \
-                 first in line {first_line}): left out"
+                "{count} {} with the stamp of the one above and another place, by up to {most:.3} m (the first in \
+                 line {first_line}): left out",
+                poses(count)
             ));
         }
         let Tally { count, first_line, most } = self.jumps;
         if count > 0 {
             warn(format!(
-                "{count} poses are turned by more than a quarter turn from the one above, by up to {:.1}° (the first \
-                 in line {first_line}): are they right?",
+                "{count} {} turned by more than a quarter turn from the one above, by up to {:.1}° (the first in line \
+                 {first_line}): is that right?",
+                poses(count),
                 most.to_degrees()
             ));
         }
@@ -193,14 +200,19 @@ impl Taken {
     }
 }
 
+/// The word for so many.
+fn poses(count: u64) -> &'static str {
+    if count == 1 { "pose" } else { "poses" }
+}
+
 /// What to tell of poses that are missing.
-fn holes(poses: &[TimedPose]) -> Option<String> {
+fn holes(given: &[TimedPose]) -> Option<String> {
     let step = |two: &[TimedPose]| two[1].stamp_ns.abs_diff(two[0].stamp_ns);
-    let mut steps: Vec<u64> = poses.windows(2).map(step).collect();
+    let mut steps: Vec<u64> = given.windows(2).map(step).collect();
     let middle = steps.len() / 2;
     let median = *steps.select_nth_unstable(middle).1 as f64;
-    let begin = poses.first()?.stamp_ns;
-    let mut holes: Vec<(u64, f64)> = poses
+    let begin = given.first()?.stamp_ns;
+    let mut holes: Vec<(u64, f64)> = given
         .windows(2)
         .map(|two| (step(two), two[0].stamp_ns.abs_diff(begin) as f64 / 1e9))
         .filter(|(length, _)| *length as f64 > HOLE * median)
@@ -217,9 +229,10 @@ fn holes(poses: &[TimedPose]) -> Option<String> {
     let missing: f64 =
         holes.iter().map(|(length, _)| (*length as f64 / median).round() - 1.0).sum();
     let longest = if holes.len() > NAMED { "the longest " } else { "" };
+    let (poses, all) = (poses(missing as u64), holes.len());
+    let holes = if all == 1 { "hole" } else { "holes" };
     Some(format!(
-        "{missing} poses are missing in {} holes ({longest}{}): the curve across them is a guess",
-        holes.len(),
+        "{missing} {poses} missing, {all} {holes} ({longest}{}): the curve across is a guess",
         named.join(", ")
     ))
 }

@@ -70,10 +70,10 @@ fn what_is_doubtful_is_told() {
     let told = warnings(&bad);
     assert_eq!(told.len(), 4, "{told:?}");
     for words in [
-        "(info) 1 poses are there twice",
-        "1 quaternions are not of unit length, by up to 1.9e-4 (the first in line 9)",
-        "1 poses have the stamp of the one above and say another thing, by up to 0.200 m (the first in line 82)",
-        "5 poses are missing in 3 holes (0.400 s after 5.900 s, ",
+        "(info) a pose is there twice",
+        "quaternions of 1 pose are not of unit length, by up to 1.9e-4 (the first in line 9)",
+        "1 pose with the stamp of the one above and another place, by up to 0.200 m (the first in line 82)",
+        "5 poses missing, 3 holes (0.400 s after 5.900 s, ",
     ] {
         assert!(told.iter().any(|text| text.contains(words)), "{words}: {told:?}");
     }
@@ -84,7 +84,7 @@ fn what_is_doubtful_is_told() {
         (row[6], row[7]) = (qz * c + qw * s, qw * c - qz * s);
     });
     let told = warnings(&jump);
-    assert!(told[0].contains("1 poses are turned by more than a quarter turn"), "{told:?}");
+    assert!(told[0].contains("1 pose turned by more than a quarter turn"), "{told:?}");
 }
 
 #[test]

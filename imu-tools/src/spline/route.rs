@@ -3,13 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use imu_core::Error as CoreError;
+use imu_core::nalgebra::Vector3;
 use imu_core::se3::Pose;
 use imu_core::sensor::Kinematics;
 use imu_core::spline::{Full, Knot, Knots, SplitSpline, SymmetricSplitSpline, cache};
-use imu_core::trajectory::{AlongSpline, Motion, Trajectory};
+use imu_core::trajectory::{AlongSpline, GRAVITY, Motion, Trajectory};
 
+use super::file::{self, Opened};
 use super::fitted::no_curve;
-use super::{Fit, FormName, Given, Options, file, fit, mean_vertical};
+use super::{Fit, FormName, Options, fit};
 use crate::error::Error;
 use crate::recording::Note;
 
@@ -55,30 +57,26 @@ impl Route {
     /// # Errors
     /// When the file cannot be read or no curve comes of it, in one sentence.
     pub fn open(path: &Path, options: &Options) -> Result<Self, Error> {
-        if let Some(route) = file::read(path)? {
-            if *options != Options::default() {
+        let given = match file::open(path)? {
+            Opened::Poses(given) => given,
+            Opened::Curve(_) if *options != Options::default() => {
                 return Err(Error::usage(format!(
                     "{} is a curve already, and stays as it is: leave form, spacing, within and smoothing out, or \
                      give its poses",
                     path.display()
                 )));
             }
-            return Ok(Self { file: Some(path.to_owned()), ..route });
-        }
-        let given = Given::read(path)?;
+            Opened::Curve(route) => return Ok(Self { file: Some(path.to_owned()), ..route }),
+        };
         let fit = fit(&given.poses, options).map_err(|error| no_curve(path, error))?;
+        let route = fit.route().map_err(|error| no_curve(path, error))?;
         let mut notes = given.notes;
         notes.push(Note::Info(told(&fit, given.poses.len())));
-        let [x, y, z] = mean_vertical(&given.poses);
+        let [x, y, z] = route.mean_specific_force(GRAVITY);
         notes.push(Note::Info(format!(
-            "an accelerometer along them reads {x:.2}, {y:.2}, {z:.2} g on average"
+            "an accelerometer along them reads {x:.2}, {y:.2}, {z:.2} m/s² on average"
         )));
-        // As a file of it would be read.
-        let control: Vec<_> = fit.control.iter().copied().map(file::settled).collect();
-        let file = Some(path.to_owned());
-        Self::new(fit.form, fit.knots, fit.span_ns, &control, notes)
-            .map(|route| Self { file, ..route })
-            .map_err(|error| no_curve(path, error))
+        Ok(Self { file: Some(path.to_owned()), notes, ..route })
     }
 
     /// Which curve it is.
@@ -147,6 +145,22 @@ impl Route {
     #[must_use]
     pub fn motion(&self, gravity: f64, t_ns: i64) -> Motion<f64> {
         self.ask(gravity, |along| along.at(t_ns))
+    }
+
+    /// What an accelerometer along it reads on average under this gravity, body axes, m/s²: the mean over the middles
+    /// of equal parts of the route, four to an interval if those are not too many.
+    #[must_use]
+    pub fn mean_specific_force(&self, gravity: f64) -> [f64; 3] {
+        const MOST: u64 = 100_000;
+        let (begin, end) = self.span_ns;
+        let length = end.abs_diff(begin);
+        let parts = (4 * length / u64::from(self.knots.step_ns())).clamp(1, MOST);
+        let sum = (0..parts).fold(Vector3::zeros(), |sum, part| {
+            let middle = u128::from(length) * u128::from(2 * part + 1) / u128::from(2 * parts);
+            let t_ns = begin.saturating_add_unsigned(middle as u64);
+            sum + Vector3::from(self.kinematics(gravity, t_ns, 0.0).specific_force)
+        });
+        (sum / parts as f64).into()
     }
 
     /// What an ideal sensor feels `offset_s` after an instant of the poses' clock.

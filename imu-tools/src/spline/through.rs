@@ -15,6 +15,8 @@ use super::TimedPose;
 
 /// Stamps may be so far from their knots, in steps: one part in this.
 const PART: i128 = 8;
+/// So near a curve goes through a pose, rad and parts of the largest place, m.
+const THROUGH: f64 = 1e-12;
 /// Rounds, at most: 4⁻³⁰ is beyond the digits.
 const MOST_ROUNDS: usize = 30;
 
@@ -28,25 +30,27 @@ pub(super) fn are_near(poses: &[TimedPose], step_ns: u32) -> bool {
     since(last) <= (poses.len() as i128 - 1) * step && poses.iter().enumerate().all(near)
 }
 
-/// Control points of a curve through poses that [`are_near`] their knots; none where the rounds do not end.
+/// Control points of a curve through poses that [`are_near`] their knots; none where they turn so far that sweeps or
+/// rounds do not end at the poses.
 ///
 /// # Errors
 /// As of [`interpolate`].
 pub(super) fn control<F: Form<f64>>(
     poses: &[TimedPose],
     knots: &Knots<f64>,
-) -> Result<Vec<Pose<f64>>, Error> {
+) -> Result<Option<Vec<Pose<f64>>>, Error> {
     let mut at_knots: Vec<_> = poses.iter().map(|pose| pose.pose).collect();
     let mut control = vec![Pose::identity(); knots.count()];
     let mut scratch = vec![Vector3::zeros(); poses.len()];
-    interpolate::<_, F>(&at_knots, &mut control, &mut scratch)?;
+    let rotation_error = interpolate::<_, F>(&at_knots, &mut control, &mut scratch)?.rotation_error;
     let is_at = |(k, pose): (usize, &TimedPose)| {
         i128::from(pose.stamp_ns)
             == i128::from(knots.start_ns()) + (k as i128 + 1) * i128::from(knots.step_ns())
     };
     if poses.iter().enumerate().all(is_at) {
-        return Ok(control);
+        return Ok((rotation_error <= THROUGH).then_some(control));
     }
+    let scale = poses.iter().fold(1.0_f64, |m, pose| m.max(pose.pose.translation().abs().max()));
     let mut before = f64::INFINITY;
     for _ in 0..MOST_ROUNDS {
         let curve = SplitCurve::<_, _, F>::from_control_points(
@@ -71,5 +75,5 @@ pub(super) fn control<F: Form<f64>>(
         before = largest;
         interpolate::<_, F>(&at_knots, &mut control, &mut scratch)?;
     }
-    Ok(control)
+    Ok((before <= THROUGH * scale).then_some(control))
 }

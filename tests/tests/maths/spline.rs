@@ -245,11 +245,11 @@ pub(super) fn order(errors: impl Iterator<Item = (f64, f64)>) -> f64 {
     points.iter().map(|(x, y)| (x - mean) * y).sum::<f64>() / spread
 }
 
+/// A control point of three poses.
+type OfThree = fn(&Pose<f64>, &Pose<f64>, &Pose<f64>) -> Result<Pose<f64>, Error>;
+
 /// Control points every step of 20 s of the ellipse and a little more.
-fn controls(
-    step_ns: i64,
-    of_three: fn(&Pose<f64>, &Pose<f64>, &Pose<f64>) -> Result<Pose<f64>, Error>,
-) -> Vec<Pose<f64>> {
+fn controls(step_ns: i64, of_three: OfThree) -> Vec<Pose<f64>> {
     (0..20_000_000_000 / step_ns + 5)
         .map(|k| {
             let near = [-1, 0, 1].map(|side| pose_at((k + side) * step_ns));
@@ -295,7 +295,7 @@ fn orders_are_those_of_the_formulas() {
         let mean = SymmetricSplitSpline::from_control_points(0, step_ns as u32, &points).unwrap();
         errors(step_ns, |t| if symmetric { mean.full(t) } else { plain.full(t) })
     };
-    let coupled = |step_ns: i64, of_three| {
+    let coupled = |step_ns: i64, of_three: OfThree| {
         let points = controls(step_ns, of_three);
         let curve = Se3Spline::from_control_points(0, step_ns as u32, &points).unwrap();
         errors(step_ns, |t| curve.full(t))

@@ -6,7 +6,7 @@ mod topic;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::{Note, ReadOptions};
+use super::{Input, Note, ReadOptions};
 use crate::error::Error;
 
 pub(super) use table::Table;
@@ -73,7 +73,12 @@ impl Poses {
     /// # Errors
     /// When there is no such file, or it holds no poses.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        Ok(Self(Origin::Table(Box::new(Table::open(path)?))))
+        Self::of(super::unpacked(path)?)
+    }
+
+    /// The same of what is unpacked.
+    pub(crate) fn of(input: Input) -> Result<Self, Error> {
+        Ok(Self(Origin::Table(Box::new(Table::of(input)?))))
     }
 
     /// Opens the poses in a recording, which is read once more for them; of `options` only the stamps that are

@@ -6,14 +6,11 @@
 //! `imu simulate` is such a table too; where its clock errs, rows have the stamp of the recording, and those of lost
 //! samples are passed over.
 
-use std::path::Path;
-
 use super::Pose;
 use crate::error::Error;
 use crate::recording::csv::dialect::Dialect;
 use crate::recording::csv::number;
 use crate::recording::input::{Input, LARGEST_PIECE};
-use crate::recording::unpack;
 
 /// So much of the start is looked at.
 const AHEAD: usize = 64 * 1024;
@@ -120,6 +117,14 @@ impl Format {
     /// Why a table of eight numbers is none of poses; the end of a sentence.
     fn why_not(start: &[u8]) -> String {
         let lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
+        let in_nanoseconds = |line: &[u8]| Self { exponent: 0, ..Self::of_tum(line) }.pose(line);
+        if lines.clone().any(|l| {
+            Self::plain(l).is_none()
+                && in_nanoseconds(l).is_some_and(|pose| pose.stamp_ns > 1 << 50)
+        }) {
+            return ": the first column looks like nanoseconds, and TUM's stamps are seconds"
+                .into();
+        }
         let rows = lines.filter_map(|line| {
             let format = Self::of_tum(line);
             format.pose(line).filter(|_| format.is_eight(line))
@@ -160,14 +165,6 @@ impl Format {
 }
 
 impl Table {
-    /// Opens the trajectory at `path`; `-` is a pipe.
-    ///
-    /// # Errors
-    /// When there is no such file, or it holds no poses.
-    pub fn open(path: &Path) -> Result<Self, Error> {
-        Self::of(unpack::unpack(Input::open(path)?)?.0)
-    }
-
     /// Whether a file begins as a trajectory does.
     pub fn are_in(input: &mut Input) -> Result<bool, Error> {
         input.fill(AHEAD)?;
@@ -256,6 +253,7 @@ impl Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     fn poses(text: &str) -> Result<Vec<Pose>, Error> {
         let stream = Box::new(std::io::Cursor::new(text.as_bytes().to_vec()));
