@@ -1,10 +1,11 @@
 //! How well sample times are recovered from the arrivals of a live sensor's messages.
 //!
 //! `cargo run --release -p imu-tests --example clock_recovery -- [RUNS]` (200 runs, a tenth of them at 8 kHz and a
-//! quarter with losses, take ten minutes):
+//! quarter with losses, take a quarter of an hour):
 //! sensors whose clocks are ∓200 ppm off and drift by 3 ppm, on adapters of 16 ms and 1 ms, with stalls of
 //! 50 to 300 ms every 30 s. Errors are of stamps, without their mean, between 200 s and 500 s after the
-//! start, in per cent of a period. ± is the standard deviation of an rms, by its scatter over runs.
+//! start, in per cent of a period. ± is the standard deviation of an rms, by its scatter over runs. Beats are
+//! the times that the phase of sensor and adapter went round in a run: with few of them little is known.
 
 use imu_tests::arrivals::{Line, Outcome, clock_ppm};
 use imu_tools::live::clock::Source;
@@ -12,17 +13,16 @@ use imu_tools::live::clock::Source;
 const SETTLE_S: f64 = 200.0;
 const RUN_S: f64 = 500.0;
 
-/// Where clock and adapter pass each other more slowly than this, millionths, they may stand still for
-/// most of a run.
-const SLOW_PPM: f64 = 25.0;
+/// Beats of a run: none, few, and many.
+const BEATS: [(&str, u64, u64); 4] =
+    [("0", 0, 0), ("1-3", 1, 3), ("> 3", 4, u64::MAX), ("all", 0, u64::MAX)];
 
-fn outcomes(line: Line, runs: u64) -> Vec<(f64, Outcome)> {
+fn outcomes(line: Line, runs: u64) -> Vec<Outcome> {
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
     let part = |first: u64| {
         let seeds = (first..runs).step_by(threads as usize);
         let ppm = |seed| clock_ppm(seed, runs);
-        let run =
-            |seed| (ppm(seed), Line { clock_ppm: ppm(seed), ..line }.run(seed, SETTLE_S, RUN_S));
+        let run = |seed| Line { clock_ppm: ppm(seed), ..line }.run(seed, SETTLE_S, RUN_S);
         seeds.map(run).collect::<Vec<_>>()
     };
     std::thread::scope(|scope| {
@@ -41,31 +41,44 @@ fn rms(values: &[f64]) -> (f64, f64) {
 
 fn errors(line: Line, runs: u64) {
     let all = outcomes(line, runs);
-    let percent = |o: &Outcome| 100.0 * o.error_s * line.rate_hz;
-    let mut each: Vec<f64> = all.iter().map(|(_, o)| percent(o)).collect();
-    let fast: Vec<f64> =
-        all.iter().filter(|(ppm, _)| ppm.abs() >= SLOW_PPM).map(|(_, o)| percent(o)).collect();
-    let spacing: Vec<f64> = all.iter().map(|(_, o)| 100.0 * o.spacing_s * line.rate_hz).collect();
-    let false_losses: u64 = all.iter().map(|(_, o)| o.lost.1).sum();
-    let z: Vec<f64> = all.iter().map(|(_, o)| o.rate_z).collect();
-    let ((all, all_sd), (fast, fast_sd)) = (rms(&each), rms(&fast));
-    each.sort_by(f64::total_cmp);
-    let at = |part: f64| each[((each.len() - 1) as f64 * part) as usize];
-    println!(
-        "| {:?} | {} | {} | {runs} | {:.2} | {:.2} | {fast:.2} ± {fast_sd:.2} | {all:.2} ± {all_sd:.2} | {:.5} | {:.2} | {false_losses} |",
-        line.source,
-        line.rate_hz,
-        line.frame_s * 1e3,
-        at(0.5),
-        at(0.9),
-        rms(&spacing).0,
-        rms(&z).0,
-    );
+    for (name, least, most) in BEATS {
+        let some: Vec<&Outcome> =
+            all.iter().filter(|o| (least..=most).contains(&o.beats)).collect();
+        if some.is_empty() {
+            continue;
+        }
+        let percent = |of: fn(&Outcome) -> f64| -> Vec<f64> {
+            some.iter().map(|o| 100.0 * of(o) * line.rate_hz).collect()
+        };
+        let mut each = percent(|o| o.error_s);
+        let spacing = percent(|o| o.spacing_s);
+        let (error, error_sd) = rms(&each);
+        each.sort_by(f64::total_cmp);
+        let at = |part: f64| each[((each.len() - 1) as f64 * part) as usize];
+        let covered = some.iter().filter(|o| o.rate_z.abs() <= 3.0).count();
+        let z: Vec<f64> = some.iter().map(|o| o.rate_z).collect();
+        let rate_sd: Vec<f64> =
+            some.iter().map(|o| 1e6 * o.status.rate_sd_hz / line.rate_hz).collect();
+        println!(
+            "| {:?} | {} | {} | {name} | {} | {:.2} | {:.2} | {error:.2} ± {error_sd:.2} | {:.5} | {:.3} | {:.2} | {:.1} | {} |",
+            line.source,
+            line.rate_hz,
+            line.frame_s * 1e3,
+            some.len(),
+            at(0.5),
+            at(0.9),
+            rms(&spacing).0,
+            rms(&rate_sd).0,
+            rms(&z).0,
+            100.0 * covered as f64 / some.len() as f64,
+            some.iter().filter(|o| o.lost.1 > 0).count(),
+        );
+    }
 }
 
 fn losses(line: Line, runs: u64) {
     let all = outcomes(line, runs);
-    let sum = |of: fn(&Outcome) -> u64| all.iter().map(|(_, o)| of(o)).sum::<u64>();
+    let sum = |of: fn(&Outcome) -> u64| all.iter().map(of).sum::<u64>();
     println!(
         "| {:?} | {} | {} | {} | {} | {:.3} | {} | {} | {:.2} |",
         line.source,
@@ -93,9 +106,9 @@ fn main() {
     };
     println!("error of stamps in % of a period\n");
     println!(
-        "| source | Hz | frame ms | runs | median | 90 % of runs | rms, ≥ {SLOW_PPM} ppm | rms, all | spacing, rms | rate z, rms | false losses |"
+        "| source | Hz | frame ms | beats | runs | median | 90 % of runs | rms | spacing, rms | sd of rate, ppm | z of rate, rms | within 3 sd, % | runs with false losses |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     let frames = [0.016, 0.001];
     for source in [Source::Ticks, Source::Count, Source::Arrival] {
         for frame_s in frames {

@@ -49,6 +49,8 @@ pub struct Outcome {
     pub lost: (u64, u64),
     /// The last rate minus the true one, in its own standard deviations.
     pub rate_z: f64,
+    /// How often the phase of sensor and timer went round: teeth of the beat that were seen.
+    pub beats: u64,
     /// What the clock said in the end.
     pub status: ClockStatus,
 }
@@ -59,6 +61,16 @@ fn uniform(rng: &mut Xoshiro256PlusPlus) -> f64 {
 }
 
 impl Line {
+    /// The greatest common measure of frame and period, s: the height of a beat's tooth.
+    #[must_use]
+    pub fn tooth_s(&self) -> f64 {
+        let (mut a, mut b) = ((self.frame_s * 1e6).round(), (1e6 / self.rate_hz).round());
+        while b > 0.0 {
+            (a, b) = (b, a % b);
+        }
+        a * 1e-6
+    }
+
     /// Lets the line run for so long, and looks at what comes after `settle_s`.
     #[must_use]
     pub fn run(&self, seed: u64, settle_s: f64, run_s: f64) -> Outcome {
@@ -78,6 +90,8 @@ impl Line {
         let mut stall = (0.0, -1.0);
         let (mut frame, mut frame_noise, mut read_at) = (0.0, 0.0, 0.0_f64);
         let mut lost_before = 0;
+        let tooth_s = self.tooth_s();
+        let (mut tooth, mut beats) = ((-phase / tooth_s).floor(), 0);
         for k in 0..(run_s * self.rate_hz) as u64 {
             let x = k as f64 / self.rate_hz;
             if k > 0 && uniform(&mut rng) < self.lost {
@@ -85,6 +99,9 @@ impl Line {
                 continue;
             }
             let true_s = sampled(x);
+            let now = ((true_s - x - phase) / tooth_s).floor();
+            beats += u64::from(now != tooth);
+            tooth = now;
             let fires = ((true_s - phase) / self.frame_s).ceil() * self.frame_s + phase;
             if fires > frame {
                 frame = fires;
@@ -122,7 +139,7 @@ impl Line {
         let status = clock.status();
         let rate = self.rate_hz
             * (1.0 + 1e-6 * (self.clock_ppm + self.drift_ppm * (wave * run_s + turn).cos()));
-        seen.outcome(status, (status.rate_hz - rate) / status.rate_sd_hz)
+        Outcome { beats, ..seen.outcome(status, (status.rate_hz - rate) / status.rate_sd_hz) }
     }
 }
 
@@ -169,6 +186,7 @@ impl Seen {
             false_gaps: self.false_gaps,
             lost: self.lost,
             rate_z,
+            beats: 0,
             status,
         }
     }

@@ -129,6 +129,12 @@ impl Decode for Intake {
         }
     }
 
+    fn reopened(&mut self, to: &mut Vec<Step>) {
+        let mut pieces = Pieces::new(to);
+        self.clock.reopened(|message, taken| pieces.take(message, &taken));
+        pieces.close();
+    }
+
     fn finish(&mut self, to: &mut Vec<Step>) -> Result<(), Error> {
         self.look(true, to)?;
         let Self { state, clock, latest_ns, .. } = self;
@@ -275,6 +281,79 @@ mod tests {
         intake.tell(&mut link);
         assert_eq!((link.protocol, link.refused, link.messages), (Some("imu-frame"), 0, 5000));
         assert!((link.clock.unwrap().rate_hz - 1000.0).abs() < 1.0);
+    }
+
+    /// Feeds frames that were sent at 1 kHz, in bursts of 16 ms; ticks begin at `boot`.
+    fn feed(intake: &mut Intake, sent: std::ops::Range<u64>, boot: u64, to: &mut Vec<Step>) {
+        let (from, length) = (sent.start, bytes(0..1).len());
+        let frames = bytes(sent.start - boot..sent.end - boot);
+        for (number, piece) in frames.chunks(length * 16).enumerate() {
+            let arrival_ns = (from as i64 + 16 * (number as i64 + 1)) * 1_000_000;
+            intake.feed(1_000_000_000 + arrival_ns, piece, to).unwrap();
+        }
+    }
+
+    /// Stamps of all samples, and how often it began anew.
+    fn stamps(steps: &[Step]) -> (Vec<i64>, usize) {
+        let blocks = steps.iter().filter_map(|step| match step {
+            Step::Samples(block) => Some(block),
+            Step::Restart => None,
+        });
+        let stamps: Vec<i64> =
+            blocks.flat_map(|block| &block.gyroscope).map(|s| s.stamp_ns).collect();
+        (stamps, steps.iter().filter(|step| matches!(step, Step::Restart)).count())
+    }
+
+    #[test]
+    fn behind_a_hang_up_ticks_tell_whether_the_sensor_went_on() {
+        // It comes back 7 s later: having gone on, or booted a second ago.
+        for (boot, restarts) in [(0, 0), (11_008, 1)] {
+            let mut intake =
+                Intake::new("it", Some(Protocol::ImuFrame), &ReadOptions::default()).unwrap();
+            let mut steps = Vec::new();
+            feed(&mut intake, 0..5008, 0, &mut steps);
+            intake.reopened(&mut steps);
+            feed(&mut intake, 12_000..17_008, boot, &mut steps);
+            intake.finish(&mut steps).unwrap();
+            let (stamps, began) = stamps(&steps);
+            assert_eq!((stamps.len(), began), (10_016, restarts));
+            // Ticks that went on measure the gap; else it is known to a burst, 16 ms.
+            let gap_ns = stamps[5008] - stamps[5007];
+            let within_ns = if restarts == 0 { 50_000 } else { 16_000_000 };
+            assert!((gap_ns - 6_993_000_000).abs() <= within_ns, "{gap_ns}");
+        }
+    }
+
+    #[test]
+    fn a_checkpoint_while_samples_are_held_back_is_resumed_with_a_gap_and_no_sample_twice() {
+        use crate::calibrate::Options;
+        use crate::live::session::{Before, Session};
+        let (protocol, options) = (Some(Protocol::ImuFrame), Options::default());
+        let take = |session: &mut Session, steps: &mut Vec<Step>| {
+            for step in steps.drain(..) {
+                match step {
+                    Step::Samples(mut block) => session.take(&mut block),
+                    Step::Restart => session.restart(),
+                }
+            }
+        };
+        let mut intake = Intake::new("it", protocol, &ReadOptions::default()).unwrap();
+        let (mut session, mut steps) = (Session::new("it", &options), Vec::new());
+        feed(&mut intake, 0..4000, 0, &mut steps);
+        // It booted: the last second is held back until its clock is known, when the program is killed.
+        feed(&mut intake, 4000..4992, 4000, &mut steps);
+        take(&mut session, &mut steps);
+        let bytes = session.to_bytes(false).unwrap();
+        let mut session = Session::resume("it", &options, &bytes, Before::IsPast).unwrap();
+        let mut intake = Intake::new("it", protocol, &ReadOptions::default()).unwrap();
+        feed(&mut intake, 6000..10_000, 4000, &mut steps);
+        intake.finish(&mut steps).unwrap();
+        take(&mut session, &mut steps);
+        let view = session.view(&Link::default());
+        let stamps = view.snapshot.calibration.gyroscope.unwrap().stamps;
+        assert_eq!((stamps.samples, stamps.duplicates, stamps.backward), (8000, 0, 0));
+        // From sample 3999 to 6000, known to a burst.
+        assert!(stamps.missing.abs_diff(2000) <= 16, "{stamps:?}");
     }
 
     #[test]

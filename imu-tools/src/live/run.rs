@@ -43,6 +43,9 @@ pub trait Decode {
     /// When they are of no known protocol.
     fn feed(&mut self, arrival_ns: i64, bytes: &[u8], to: &mut Vec<Step>) -> Result<(), Error>;
 
+    /// The port went away and is open again: appends what waited.
+    fn reopened(&mut self, to: &mut Vec<Step>);
+
     /// There is nothing more: appends what waited.
     ///
     /// # Errors
@@ -258,6 +261,11 @@ impl Live<'_> {
             Arrival::Back => {
                 face.say(&format!("{} is back", link.name));
                 link.gone = None;
+                let mut steps = Vec::new();
+                if let Some(decode) = &mut self.decode {
+                    decode.reopened(&mut steps);
+                }
+                self.proceed(steps)?;
             }
             Arrival::End => return Ok(false),
             Arrival::Failed(error) => return Err(error),

@@ -46,6 +46,8 @@ impl Decode for Text {
         Ok(())
     }
 
+    fn reopened(&mut self, _: &mut Vec<Step>) {}
+
     fn finish(&mut self, _: &mut Vec<Step>) -> Result<(), Error> {
         Ok(())
     }

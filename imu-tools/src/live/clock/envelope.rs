@@ -17,6 +17,8 @@ pub(super) struct Point {
     pub t: f64,
     /// Arrival minus sensor time, ns.
     pub y: f64,
+    /// After so many bursts their lengths repeat, in this second; 0: they do not.
+    pub cycle: u8,
 }
 
 /// The curve at its end, where the last point is.
@@ -28,9 +30,9 @@ pub(super) struct Curve {
     pub level: f64,
     /// Its slope there, ns/s.
     pub slope: f64,
-    /// How much higher than it the points are, ns: mean, and standard deviation.
-    pub above: f64,
-    pub scatter: f64,
+    /// Standard deviations of both, ns and ns/s.
+    pub level_sd: f64,
+    pub slope_sd: f64,
     /// From the first point to the last, s.
     pub span: f64,
     /// How many points there are.
@@ -38,10 +40,13 @@ pub(super) struct Curve {
 }
 
 /// Shorter stretches are taken for straight, s: a bend of [`MOST_BENT`] makes 10 µs of a minute.
-const STRAIGHT_S: f64 = 100.0;
+pub(super) const STRAIGHT_S: f64 = 100.0;
 
 /// The most that a clock's rate changes, ns/s²: 20 ppm in half an hour.
-const MOST_BENT: f64 = 11.0;
+pub(super) const MOST_BENT: f64 = 11.0;
+
+/// How fast a bend changes, ns/s³: one of 4 ns/s² turns in ten minutes.
+const JERK: f64 = 6e-3;
 
 /// Steps of golden section: to 0.618²⁰, 1e-4 of the range.
 const STEPS: usize = 20;
@@ -70,8 +75,14 @@ pub(super) fn under(points: &[Point], hull: &mut Vec<Point>) -> Option<Curve> {
     };
     let n = points.len() as f64;
     let above = points.iter().map(distance).sum::<f64>() / n;
-    let square = points.iter().map(|p| (distance(p) - above).powi(2)).sum::<f64>() / n;
-    Some(Curve { t: last.t, level, slope, above, scatter: square.sqrt(), span, points: n })
+    // The free end of a parabola through n points at σ, over a span: 3σ/√n, and its slope σ√192/(span·√n).
+    // The points under which a curve was laid are at their mean distance from it, or so. What is no
+    // parabola is a Chebyshev polynomial of the third degree, jerk·span³/192 high, and 18/span as steep.
+    let sd = if n > 2.0 { above / n.sqrt() } else { f64::INFINITY };
+    let cubic = JERK * span.powi(3) / 192.0;
+    let level_sd = cubic.hypot(3.0 * sd);
+    let slope_sd = (18.0 * cubic).hypot(192_f64.sqrt() * sd) / span;
+    Some(Curve { t: last.t, level, slope, level_sd, slope_sd, span, points: n })
 }
 
 /// Where a function of one hump is highest between ∓[`MOST_BENT`] (Kiefer 1953).
@@ -96,10 +107,23 @@ fn highest(height: &mut impl FnMut(f64) -> f64) -> f64 {
 
 /// The edge of the lower hull over `mean`, of points less ½·bend·t²: height at `end`, and slope.
 fn line(points: &[Point], end: f64, mean: f64, bend: f64, hull: &mut Vec<Point>) -> (f64, f64) {
+    bottom_hull(points, end, bend, 1.0, hull);
+    let over = hull.windows(2).find(|e| matches!(e, [_, b] if b.t >= mean));
+    match over {
+        Some([a, b]) => {
+            let slope = (b.y - a.y) / (b.t - a.t);
+            (b.y - slope * b.t, slope)
+        }
+        _ => (hull.last().map_or(0.0, |p| p.y), 0.0),
+    }
+}
+
+/// The lower hull of points less ½·bend·t², in times before `end`; `side` −1 turns them upside down.
+pub(super) fn bottom_hull(points: &[Point], end: f64, bend: f64, side: f64, hull: &mut Vec<Point>) {
     hull.clear();
     for p in points {
         let t = p.t - end;
-        let next = Point { t, y: p.y - 0.5 * bend * t * t };
+        let next = Point { t, y: side * (p.y - 0.5 * bend * t * t), ..*p };
         // Andrew's chain: whatever is not under the line to the next point is no corner.
         while let [.., a, b] = hull.as_slice() {
             if (b.y - a.y) * (next.t - a.t) < (next.y - a.y) * (b.t - a.t) {
@@ -117,14 +141,6 @@ fn line(points: &[Point], end: f64, mean: f64, bend: f64, hull: &mut Vec<Point>)
         }
         hull.push(next);
     }
-    let over = hull.windows(2).find(|e| matches!(e, [_, b] if b.t >= mean));
-    match over {
-        Some([a, b]) => {
-            let slope = (b.y - a.y) / (b.t - a.t);
-            (b.y - slope * b.t, slope)
-        }
-        _ => (hull.last().map_or(0.0, |p| p.y), 0.0),
-    }
 }
 
 #[cfg(test)]
@@ -138,7 +154,7 @@ mod tests {
         let points: Vec<Point> = (0..400)
             .map(|i| {
                 let t = f64::from(i);
-                Point { t, y: truth(t) + f64::from((i * 37) % 7) * 1e4 }
+                Point { t, y: truth(t) + f64::from((i * 37) % 7) * 1e4, cycle: 0 }
             })
             .collect();
         let curve = under(&points, &mut Vec::new()).unwrap();
@@ -149,7 +165,7 @@ mod tests {
 
     #[test]
     fn two_points_make_a_line_and_one_none() {
-        let points = [Point { t: 1.0, y: 5.0 }, Point { t: 2.0, y: 3.0 }];
+        let points = [Point { t: 1.0, y: 5.0, cycle: 0 }, Point { t: 2.0, y: 3.0, cycle: 0 }];
         let curve = under(&points, &mut Vec::new()).unwrap();
         assert_eq!((curve.level, curve.slope), (3.0, -2.0));
         assert_eq!(under(&points[..1], &mut Vec::new()), None);

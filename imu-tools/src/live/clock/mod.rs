@@ -30,6 +30,7 @@
 mod envelope;
 mod learn;
 mod reading;
+mod strip;
 mod track;
 
 use serde::{Deserialize, Serialize};
@@ -159,15 +160,19 @@ impl Clock {
         self.release(&mut to);
     }
 
-    /// The port was closed and opened again: hands on what is held back, and nothing connects the
-    /// next message with it. The rate is remembered.
+    /// The port was closed and opened again: hands on what is held back. Ticks that went on meanwhile
+    /// as long as the host's clock did connect the next message with it; nothing else does, but the
+    /// rate is remembered.
     pub fn reopened(&mut self, mut to: impl FnMut(&Message, Taken)) {
         self.release(&mut to);
-        self.before = self.track.take().or(self.before.take());
+        match &mut self.track {
+            Some(track) if track.source() == Source::Ticks => track.reopened(),
+            _ => self.before = self.track.take().or(self.before.take()),
+        }
     }
 
-    /// This clock was read from a file, by a program whose time has another epoch: as
-    /// [`reopened`](Self::reopened), and stamps need not be later than those of the other program.
+    /// This clock was read from a file, by a program whose time has another epoch: nothing connects the
+    /// next message with those before, and stamps need not be later than those of the other program.
     pub fn resumed(&mut self) {
         self.held.clear();
         self.before = self.track.take().or(self.before.take());

@@ -4,11 +4,15 @@ use serde::{Deserialize, Serialize};
 
 use super::envelope::{self, Curve, Point};
 use super::reading::{Reading, Source};
+use super::strip;
 use crate::live::Message;
 
 /// Of so many seconds and messages the earliest arrival counts.
 const BLOCK_S: f64 = 1.0;
 const BLOCK_MESSAGES: u64 = 4;
+
+/// Bursts of a block that are looked at for a cycle, at most.
+const MOST_BURSTS: usize = 1024;
 
 /// What was read within less time, ns, had waited for its reader, and says nothing of the line.
 const BLOCK_READ_NS: i64 = 500_000_000;
@@ -41,6 +45,9 @@ const SETTLED: f64 = 60.0;
 /// How far the line may be too low, in periods, and how late the earliest of a second may be read, ns.
 const UNSURE: f64 = 0.05;
 const UNSURE_NS: f64 = 50e3;
+
+/// And so many standard deviations of its level.
+const FAR: f64 = 3.0;
 
 /// So many points under the line, each by half a period, show that it was too high.
 const LOW: u32 = 3;
@@ -91,6 +98,8 @@ pub(super) struct Track {
     passed_over: u64,
     /// Nothing connects the next message with the last.
     lost_track: bool,
+    /// The sensor may have been switched off since.
+    reopened: bool,
     /// The present block: its beginning, messages, the earliest arrival and its distance.
     block_since: f64,
     block_since_ns: i64,
@@ -100,6 +109,9 @@ pub(super) struct Track {
     low: u32,
     points: Vec<Point>,
     curve: Curve,
+    /// Messages of the present burst, and of those of the block before it.
+    burst: u64,
+    bursts: Vec<u64>,
 }
 
 impl Track {
@@ -118,6 +130,7 @@ impl Track {
             drift: 0.0,
             passed_over: 0,
             lost_track: false,
+            reopened: false,
             block_since: 0.0,
             block_since_ns: start.origin_ns,
             block_messages: 0,
@@ -126,6 +139,8 @@ impl Track {
             low: 0,
             points: Vec::new(),
             curve: Curve::default(),
+            burst: 0,
+            bursts: Vec::new(),
         }
     }
 
@@ -146,11 +161,8 @@ impl Track {
     /// Messages a second, and the standard deviation of that.
     pub fn rate(&self) -> (f64, f64) {
         let rate = 1e9 / self.period_ns();
-        let Curve { above, span, points, .. } = self.curve;
-        // The slope at the end of a parabola through n points at σ, over a span: σ√192/(span·√n). The
-        // points under which a curve was laid are at their mean distance from it, or so.
-        let sd = 192_f64.sqrt() * above / (span * points.sqrt());
-        (rate, if points > 2.0 { 1e-9 * rate * sd } else { f64::INFINITY })
+        let Curve { slope_sd, points, .. } = self.curve;
+        (rate, if points > 2.0 { 1e-9 * rate * slope_sd } else { f64::INFINITY })
     }
 
     /// How much faster than the host's the sensor's clock runs, in millionths.
@@ -196,6 +208,11 @@ impl Track {
         units * unit_ns
     }
 
+    /// The port was opened again: the next message must show that the sensor went on.
+    pub fn reopened(&mut self) {
+        self.reopened = true;
+    }
+
     /// Where a message belongs; `None` where nothing connects it with the last.
     pub fn next(&mut self, arrival_ns: i64, message: &Message) -> Option<Next> {
         if self.lost_track {
@@ -222,6 +239,9 @@ impl Track {
         if self.source != Source::Arrival && late < -AHEAD_NS - 1e-4 * silence as f64 {
             return None;
         }
+        if std::mem::take(&mut self.reopened) && late > SET_NS + 1e-4 * silence as f64 {
+            return None;
+        }
         self.reading = now.or(self.reading);
         let strides = units as f64 / self.stride as f64;
         let lost = (strides.round() as u64).saturating_sub(1);
@@ -233,6 +253,10 @@ impl Track {
     /// Passes on to a message, and learns from its arrival.
     pub fn pass(&mut self, arrival_ns: i64, units: u64) {
         self.units = self.units.saturating_add(units);
+        if arrival_ns != self.last_arrival_ns && self.bursts.len() < MOST_BURSTS {
+            self.bursts.push(std::mem::take(&mut self.burst));
+        }
+        self.burst = self.burst.saturating_add(units / self.stride.max(1));
         self.last_arrival_ns = arrival_ns;
         let t = self.seconds(self.units);
         let late = self.late(arrival_ns, self.units);
@@ -245,13 +269,15 @@ impl Track {
         if late < self.earliest_late {
             self.earliest_late = late;
             let y = arrival_ns.saturating_sub(self.origin_ns) as f64 - 1e9 * t;
-            self.earliest = Point { t, y };
+            self.earliest = Point { t, y, cycle: 0 };
         }
         let read_ns = arrival_ns.saturating_sub(self.block_since_ns);
         let whole = t - self.block_since >= BLOCK_S && read_ns >= BLOCK_READ_NS;
         if whole && self.block_messages >= BLOCK_MESSAGES {
             let block_s = t - self.block_since;
             self.block_messages = 0;
+            self.earliest.cycle = strip::cycle_of(&self.bursts);
+            self.bursts.clear();
             if !self.shows_a_step() {
                 self.learn(t, block_s);
             }
@@ -265,8 +291,10 @@ impl Track {
         let wrap = self.reading.and_then(|r| r.wraps_at);
         if self.source == Source::Arrival {
             // The last message of a burst waited less than a period, or it would not be the last.
-            let periods = late / self.period_ns() - UNSURE;
-            if self.curve.points < SETTLED || late < self.period_ns() + UNSURE_NS || periods < 1.0 {
+            let curve = self.curve.level + self.curve.slope * (self.earliest.t - self.curve.t);
+            let sure = self.earliest.y - curve - FAR * self.curve.level_sd;
+            let periods = sure / self.period_ns() - UNSURE;
+            if self.curve.points < SETTLED || sure < self.period_ns() + UNSURE_NS || periods < 1.0 {
                 return false;
             }
             self.passed_over = periods as u64;
@@ -299,6 +327,7 @@ impl Track {
         self.points.push(self.earliest);
         let mut hull = Vec::with_capacity(self.points.len());
         let Some(curve) = envelope::under(&self.points, &mut hull) else { return };
+        let curve = strip::mean(&self.points, self.period_ns(), curve).unwrap_or(curve);
         self.curve = curve;
         let (offset, soon) = (self.offset_at(t), (curve.span / 4.0).clamp(SOON_S.0, SOON_S.1));
         let to = curve.level + curve.slope * (t - curve.t);

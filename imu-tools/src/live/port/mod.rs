@@ -3,6 +3,7 @@
 //! Each is read on a thread of its own, which notes when bytes came and is never kept waiting by
 //! calculations. A device or connection that goes away is waited for and opened again.
 
+mod again;
 mod network;
 mod pipe;
 mod replay;

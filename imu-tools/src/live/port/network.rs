@@ -1,11 +1,12 @@
 //! A network connection: a serial server, or a program that forwards bytes. Opened again when it closes.
 
-use std::io::{self, Read as _};
+use std::io;
 use std::net::{TcpStream, ToSocketAddrs as _};
 use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 
-use super::{Arrival, HostClock, pump};
+use super::Arrival;
+use super::again::{self, Again};
 use crate::error::Error;
 
 /// How long to wait for an answer, and between attempts.
@@ -37,36 +38,10 @@ pub(super) fn open(address: &str, to: SyncSender<Arrival>) -> Result<(), Error> 
         Error::data(format!("cannot connect to tcp://{address}: {why}; see that the server runs"))
     })?;
     let address = address.to_owned();
-    std::thread::spawn(move || {
-        let clock = HostClock::new();
-        let mut stream = first;
-        loop {
-            let why = match pump(|buffer| stream.read(buffer), &clock, &to) {
-                None => return,
-                Some(Ok(())) => "the connection was closed".to_owned(),
-                Some(Err(error)) => error.to_string(),
-            };
-            if to.send(Arrival::Gone(why)).is_err() {
-                return;
-            }
-            stream = loop {
-                std::thread::sleep(PAUSE);
-                match connect(&address) {
-                    Ok(stream) => break stream,
-                    // Somebody must still want it.
-                    Err(_) => {
-                        let nothing =
-                            Arrival::Bytes { arrival_ns: clock.now_ns(), bytes: Vec::new() };
-                        if to.send(nothing).is_err() {
-                            return;
-                        }
-                    }
-                }
-            };
-            if to.send(Arrival::Back).is_err() {
-                return;
-            }
-        }
-    });
+    let why = |ended: io::Result<()>| match ended {
+        Ok(()) => "the connection was closed".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    again::read(first, Again { connect: move || connect(&address), pause: PAUSE, why }, to);
     Ok(())
 }

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use serial2::SerialPort;
 
-use super::{Arrival, HostClock, PIECE, Refused, pump};
+use super::again::{self, Again};
+use super::{Arrival, PIECE, Refused};
 use crate::error::Error;
 
 /// Usual baud rates, the most usual first.
@@ -172,38 +173,13 @@ pub(super) fn open(
         Some(baud) => baud,
         None => find_rate(path, refused)?,
     };
-    let mut port = connect(path, baud).map_err(|e| refusal(path, &e))?;
+    let port = connect(path, baud).map_err(|e| refusal(path, &e))?;
     let path = path.to_owned();
-    std::thread::spawn(move || {
-        let clock = HostClock::new();
-        loop {
-            let why = match pump(|buffer| port.read(buffer), &clock, &to) {
-                None => return,
-                Some(Ok(())) => "it was unplugged".to_owned(),
-                Some(Err(error)) => format!("it was unplugged ({error})"),
-            };
-            if to.send(Arrival::Gone(why)).is_err() {
-                return;
-            }
-            drop(port);
-            port = loop {
-                std::thread::sleep(PAUSE);
-                match connect(&path, baud) {
-                    Ok(port) => break port,
-                    Err(_) => {
-                        let nothing =
-                            Arrival::Bytes { arrival_ns: clock.now_ns(), bytes: Vec::new() };
-                        if to.send(nothing).is_err() {
-                            return;
-                        }
-                    }
-                }
-            };
-            if to.send(Arrival::Back).is_err() {
-                return;
-            }
-        }
-    });
+    let why = |ended: io::Result<()>| match ended {
+        Ok(()) => "it was unplugged".to_owned(),
+        Err(error) => format!("it was unplugged ({error})"),
+    };
+    again::read(port, Again { connect: move || connect(&path, baud), pause: PAUSE, why }, to);
     Ok(())
 }
 
