@@ -1,4 +1,4 @@
-//! A bare-metal image: start-up, words to the host by semihosting, SysTick, a painted stack.
+//! A bare-metal image: start-up, words to the host by semihosting, SysTick, a serial line, a painted stack.
 //!
 //! A binary is `firmware_image::main!(function)`; everything here is free of panics, so that the
 //! panic handler, which calls a function that does not exist, links only if `imu_core` is too.
@@ -9,9 +9,12 @@ mod semihosting;
 mod stack;
 mod startup;
 mod systick;
+mod uart;
 
 pub use print::Printer;
 pub use semihosting::exit;
+pub use systick::Every;
+pub use uart::Uart;
 
 /// Makes a function the one that the image runs after reset; the image then leaves QEMU.
 #[macro_export]

@@ -7,6 +7,7 @@
 mod ceilings;
 mod host;
 mod images;
+mod live;
 mod lockfile;
 mod panics;
 mod qemu;
@@ -18,14 +19,16 @@ use std::process::ExitCode;
 /// A result with an error in one sentence.
 type Result<T> = std::result::Result<T, String>;
 
-const USAGE: &str = "usage: tests/firmware/run [--bless]
-  --bless  write the figures measured now into tests/firmware/ceilings.csv";
+const USAGE: &str = "usage: tests/firmware/run [--bless | --live]
+  --bless  write the figures measured now into tests/firmware/ceilings.csv
+  --live   stream frames from the emulated board into imu live instead, and compare what it finds";
 
 fn main() -> ExitCode {
-    let mut bless = false;
+    let (mut bless, mut live) = (false, false);
     for argument in std::env::args().skip(1) {
         match argument.as_str() {
             "--bless" => bless = true,
+            "--live" => live = true,
             "--help" | "-h" => {
                 println!("{USAGE}");
                 return ExitCode::SUCCESS;
@@ -36,7 +39,7 @@ fn main() -> ExitCode {
             }
         }
     }
-    match check(bless) {
+    match if live { stream() } else { check(bless) } {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
@@ -46,16 +49,34 @@ fn main() -> ExitCode {
     }
 }
 
-/// Everything; true if all is as it should be.
-fn check(bless: bool) -> Result<bool> {
+/// This workspace.
+fn folder() -> Result<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let folder = folder.canonicalize().map_err(|e| format!("{}: {e}", folder.display()))?;
+    folder.canonicalize().map_err(|e| format!("{}: {e}", folder.display()))
+}
+
+/// Where images are built.
+fn target_dir(folder: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR")
+        .map_or_else(|| folder.join("target"), PathBuf::from)
+        .join("firmware")
+}
+
+/// From the board's serial line to `imu live`; true if all is as it should be.
+fn stream() -> Result<bool> {
+    let folder = folder()?;
+    let toolchain = toolchain::find()?;
+    qemu::find()?;
+    live::check(&toolchain, &folder, &target_dir(&folder))
+}
+
+/// Everything else; true if all is as it should be.
+fn check(bless: bool) -> Result<bool> {
+    let folder = folder()?;
     lockfile::same_versions(&folder.join("../../Cargo.lock"), &folder.join("Cargo.lock"))?;
     let toolchain = toolchain::find()?;
     qemu::find()?;
-    let target_dir = std::env::var_os("CARGO_TARGET_DIR")
-        .map_or_else(|| folder.join("target"), PathBuf::from)
-        .join("firmware");
+    let target_dir = target_dir(&folder);
 
     let (expected, measured) = std::thread::scope(|scope| {
         // The emulators take nearly all the time, a processor each.

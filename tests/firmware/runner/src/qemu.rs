@@ -3,8 +3,9 @@
 use crate::Result;
 use crate::ceilings::Figure;
 use crate::images::Target;
+use std::io::{BufRead as _, BufReader};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Child, Command, Stdio};
 
 const QEMU: &str = "qemu-system-arm";
 
@@ -56,6 +57,48 @@ pub fn run(target: &Target, image: &Path) -> Result<Report> {
             .ok_or_else(|| format!("{} on {} printed: {line}", image.display(), target.name))?;
     }
     Ok(report)
+}
+
+/// An image that runs, in real time, with its serial line on a terminal of the host.
+pub struct Stream {
+    qemu: Child,
+    /// The terminal.
+    pub port: String,
+}
+
+impl Stream {
+    /// Starts an image.
+    pub fn start(target: &Target, image: &Path) -> Result<Self> {
+        let failed = |e| format!("{QEMU}: {e}");
+        let mut qemu = Command::new(QEMU)
+            .args(target.machine)
+            .args(["-display", "none", "-monitor", "none", "-serial", "pty", "-kernel"])
+            .arg(image)
+            .stdout(Stdio::piped())
+            .spawn()
+            .map_err(failed)?;
+        let said = qemu.stdout.take().map(BufReader::new);
+        // "char device redirected to /dev/pts/3 (label serial0)"
+        let port = said.into_iter().flat_map(|said| said.lines()).map_while(|line| line.ok());
+        let port = port.filter_map(|line| {
+            line.split(' ').find(|word| word.starts_with("/dev/")).map(str::to_owned)
+        });
+        match port.take(1).next() {
+            Some(port) => Ok(Self { qemu, port }),
+            None => {
+                let _ = qemu.kill();
+                Err(format!("{QEMU} names no terminal for the serial line"))
+            }
+        }
+    }
+}
+
+impl Drop for Stream {
+    fn drop(&mut self) {
+        // It runs for ever.
+        let _ = self.qemu.kill();
+        let _ = self.qemu.wait();
+    }
 }
 
 fn parse(line: &str, target: &Target, report: &mut Report) -> Option<()> {
