@@ -243,7 +243,11 @@ impl Sample {
         let route = self.how.open(&self.file)?;
         say_notes(route.notes());
         let count = sampled::write(&route, rate, &self.output, table)?;
-        super::say(&format!("imu: wrote {count} instants to {}", super::target_name(&self.output)));
+        let instants = if count == 1 { "instant" } else { "instants" };
+        super::say(&format!(
+            "imu: wrote {count} {instants} to {}",
+            super::target_name(&self.output)
+        ));
         Ok(())
     }
 }

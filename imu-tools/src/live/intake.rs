@@ -9,9 +9,9 @@ use super::link::{Link, LinkClock};
 use super::protocol::{Decoder, Protocol, candidates, recognise};
 use super::rates::rates;
 use super::run::{Decode, Step};
-use super::{Message, shown};
+use super::{Kind, Message, shown};
 use crate::error::Error;
-use crate::recording::{Block, ReadOptions, Temperature};
+use crate::recording::{Block, ReadOptions, SampleKind, Temperature};
 
 /// Bytes that are tried for a protocol now and then, and by which it must have shown.
 const TRIED: usize = 512;
@@ -207,18 +207,29 @@ fn decode(
 /// Puts samples into blocks, with restarts between.
 struct Pieces<'a> {
     block: Block,
+    /// What its samples are.
+    samples: SampleKind,
     to: &'a mut Vec<Step>,
 }
 
 impl<'a> Pieces<'a> {
     fn new(to: &'a mut Vec<Step>) -> Self {
-        Self { block: Block::default(), to }
+        Self { block: Block::default(), samples: SampleKind::default(), to }
     }
 
     fn take(&mut self, message: &Message, taken: &super::clock::Taken) {
         if taken.restart {
             self.close();
             self.to.push(Step::Restart);
+        }
+        // `rates` divides increments by their time.
+        let samples = match message.kind {
+            Kind::Rates => SampleKind::Instantaneous,
+            Kind::Increments { .. } => SampleKind::Mean,
+        };
+        if samples != self.samples {
+            self.close();
+            self.samples = samples;
         }
         let (gyroscope, accelerometer) = rates(message, taken);
         self.block.gyroscope.extend(gyroscope);
@@ -231,7 +242,7 @@ impl<'a> Pieces<'a> {
 
     fn close(&mut self) {
         if !self.block.is_empty() {
-            self.to.push(Step::Samples(std::mem::take(&mut self.block)));
+            self.to.push(Step::Samples(std::mem::take(&mut self.block), self.samples));
         }
     }
 }
@@ -239,6 +250,7 @@ impl<'a> Pieces<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::live::clock::Taken;
     use crate::live::protocol::Encoder;
     use crate::live::{Kind, Message, Ticks};
 
@@ -271,7 +283,7 @@ mod tests {
         }
         intake.finish(&mut steps).unwrap();
         let blocks = steps.iter().map(|step| match step {
-            Step::Samples(block) => block,
+            Step::Samples(block, _) => block,
             Step::Restart => panic!("nothing began anew"),
         });
         let values: Vec<f64> =
@@ -296,7 +308,7 @@ mod tests {
     /// Stamps of all samples, and how often it began anew.
     fn stamps(steps: &[Step]) -> (Vec<i64>, usize) {
         let blocks = steps.iter().filter_map(|step| match step {
-            Step::Samples(block) => Some(block),
+            Step::Samples(block, _) => Some(block),
             Step::Restart => None,
         });
         let stamps: Vec<i64> =
@@ -332,7 +344,7 @@ mod tests {
         let take = |session: &mut Session, steps: &mut Vec<Step>| {
             for step in steps.drain(..) {
                 match step {
-                    Step::Samples(mut block) => session.take(&mut block),
+                    Step::Samples(mut block, _) => session.take(&mut block),
                     Step::Restart => session.restart(),
                 }
             }
@@ -354,6 +366,26 @@ mod tests {
         assert_eq!((stamps.samples, stamps.duplicates, stamps.backward), (8000, 0, 0));
         // From sample 3999 to 6000, known to a burst.
         assert!(stamps.missing.abs_diff(2000) <= 16, "{stamps:?}");
+    }
+
+    #[test]
+    fn increments_become_means() {
+        let over_s = Some(0.001);
+        let kinds = [Kind::Rates, Kind::Increments { over_s }];
+        let mut steps = Vec::new();
+        let mut pieces = Pieces::new(&mut steps);
+        for (stamp_ns, kind) in (0..).zip(kinds) {
+            let message = Message { gyroscope: Some([0.25; 3]), kind, ..Message::default() };
+            let taken = Taken { stamp_ns, interval_s: 1.0, lost: 0, certain: true, restart: false };
+            pieces.take(&message, &taken);
+        }
+        pieces.close();
+        let told = steps.iter().map(|step| match step {
+            Step::Samples(block, samples) => (block.gyroscope[0].value[0], *samples),
+            Step::Restart => panic!("nothing began anew"),
+        });
+        let wanted = [(0.25, SampleKind::Instantaneous), (250.0, SampleKind::Mean)];
+        assert_eq!(told.collect::<Vec<_>>(), wanted);
     }
 
     #[test]

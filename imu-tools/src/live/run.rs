@@ -12,7 +12,7 @@ use super::port::{Arrival, Port};
 use super::session::{Session, View};
 use crate::error::Error;
 use crate::output::{Output, end_is_asked};
-use crate::recording::{Block, Sink};
+use crate::recording::{Block, SampleKind, Sink};
 
 /// Keys and signals are looked at so often.
 const GLANCE: Duration = Duration::from_millis(50);
@@ -29,8 +29,8 @@ const GROWTH: f64 = 1.02;
 /// What became of bytes.
 #[derive(Debug)]
 pub enum Step {
-    /// Samples.
-    Samples(Block),
+    /// Samples, and what they are.
+    Samples(Block, SampleKind),
     /// The sensor was switched off and on.
     Restart,
 }
@@ -253,7 +253,7 @@ impl Live<'_> {
                 }
                 self.proceed(steps)?;
             }
-            Arrival::Samples(block) => self.take(block)?,
+            Arrival::Samples(block, samples) => self.take(block, samples)?,
             Arrival::Gone(why) => {
                 face.say(&format!("{}: {why}; waiting for it to come back", link.name));
                 link.gone = Some(why);
@@ -276,17 +276,20 @@ impl Live<'_> {
     fn proceed(&mut self, steps: Vec<Step>) -> Result<(), Error> {
         for step in steps {
             match step {
-                Step::Samples(block) => self.take(block)?,
+                Step::Samples(block, samples) => self.take(block, samples)?,
                 Step::Restart => self.session.restart(),
             }
         }
         Ok(())
     }
 
-    fn take(&mut self, mut block: Block) -> Result<(), Error> {
+    fn take(&mut self, mut block: Block, samples: SampleKind) -> Result<(), Error> {
         self.session.take(&mut block);
         match &mut self.keep.record {
-            Some(record) if !block.is_empty() => record.write_block(&block),
+            Some(record) if !block.is_empty() => {
+                record.samples_are(samples);
+                record.write_block(&block)
+            }
             _ => Ok(()),
         }
     }

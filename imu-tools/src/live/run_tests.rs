@@ -42,7 +42,7 @@ impl Decode for Text {
             }
             self.open.clear();
         }
-        to.push(Step::Samples(block));
+        to.push(Step::Samples(block, SampleKind::default()));
         Ok(())
     }
 

@@ -228,6 +228,10 @@ pub trait Sink: Send {
         Ok(())
     }
 
+    /// Says what the samples to come are, where the format can say so and it does not stand there yet:
+    /// before the first samples.
+    fn samples_are(&mut self, _samples: SampleKind) {}
+
     /// Completes the file and puts it in its place. A sink that is dropped instead leaves nothing.
     ///
     /// # Errors

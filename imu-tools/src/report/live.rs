@@ -108,7 +108,8 @@ pub fn link(view: &View) -> Vec<String> {
                 (clock.rate_hz, clock.rate_sd_hz, clock.jitter_s)
             });
         if rate > 0.0 {
-            let sd = if sd > 0.0 { format!(" ± {sd:.1e}") } else { String::new() };
+            let is_known = sd > 0.0 && sd.is_finite();
+            let sd = if is_known { format!(" ± {sd:.1e}") } else { String::new() };
             said.push(format!("{rate:.4}{sd} Hz"));
             said.push(format!("jitter {} ms", short(1e3 * jitter)));
         }

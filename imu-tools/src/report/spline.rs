@@ -17,7 +17,7 @@ pub fn text(fitted: &Fitted) -> String {
         text,
         "{path}: {} poses in {}, {} a second",
         poses.len(),
-        duration(*span_s),
+        if *span_s < 60.0 { format!("{span_s:.2} s") } else { duration(*span_s) },
         short((poses.len() as f64 - 1.0) / span_s)
     );
     let smooth = choices.first().and_then(|made| made.smooth_hz);

@@ -1,5 +1,6 @@
 //! A file of poses and what was made of it: all that there is to report.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use imu_core::trajectory::GRAVITY;
@@ -46,14 +47,16 @@ impl Fitted {
             }
         };
         let span_s = given.span_s();
-        let Given { poses, notes } = given;
-        let fit = fit(&poses, options).map_err(|error| no_curve(path, error))?;
-        let route = fit.route().map_err(|error| no_curve(path, error))?;
+        let Given { poses, mut notes } = given;
+        let fit = fit(&poses, options).map_err(|error| no_curve(path, &error, &notes))?;
+        let route = fit.route().map_err(|error| no_curve(path, &error, &notes))?;
+        let felt = route.felt(GRAVITY);
+        notes.extend(felt.suspicion(route.span_ns().0).map(Note::Warning));
         Ok(Self {
             path: path.display().to_string(),
             span_s,
             notes,
-            mean_force: route.mean_specific_force(GRAVITY),
+            mean_force: felt.mean_specific_force,
             choices: choices(&poses, options, &fit),
             outline: Outline::of(&route, &poses),
             poses,
@@ -63,6 +66,10 @@ impl Fitted {
 }
 
 /// Why there is no curve, and of what.
-pub(super) fn no_curve(path: &Path, error: impl std::fmt::Display) -> Error {
-    Error::data(format!("{}: {error}", path.display()))
+pub(super) fn no_curve(path: &Path, error: &dyn Display, notes: &[Note]) -> Error {
+    let warning = notes.iter().find_map(|note| match note {
+        Note::Warning(text) => Some(format!(" ({text})")),
+        Note::Info(_) => None,
+    });
+    Error::data(format!("{}: {error}{}", path.display(), warning.unwrap_or_default()))
 }

@@ -28,6 +28,7 @@ mod banded;
 mod bridge;
 mod choices;
 mod distance;
+mod felt;
 pub mod file;
 mod fitted;
 mod jitter;
@@ -42,6 +43,7 @@ mod through;
 
 pub use choices::{Choice, choices};
 pub use distance::Distance;
+pub use felt::FeltAlong;
 pub use fitted::Fitted;
 pub use jitter::{Jitter, JitterOfCurve};
 pub use outline::Outline;
@@ -124,8 +126,8 @@ pub enum FitError {
     Undecided(f64),
     /// Sweeps that do not settle.
     #[error(
-        "the attitudes of a curve with knots {0} s apart do not settle; take knots closer to each other, or poses \
-         without a long hole"
+        "the attitudes of a curve with knots {0} s apart do not settle: they turn too far from one knot to the next; \
+         take knots closer to each other, or give more poses"
     )]
     Unsettled(f64),
 }

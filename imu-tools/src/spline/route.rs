@@ -1,14 +1,15 @@
 //! A curve of poses with its logarithms cached: what an IMU can follow.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use imu_core::Error as CoreError;
-use imu_core::nalgebra::Vector3;
 use imu_core::se3::Pose;
 use imu_core::sensor::Kinematics;
 use imu_core::spline::{Full, Knot, Knots, SplitSpline, SymmetricSplitSpline, cache};
 use imu_core::trajectory::{AlongSpline, GRAVITY, Motion, Trajectory};
 
+use super::felt::FeltAlong;
 use super::file::{self, Opened};
 use super::fitted::no_curve;
 use super::{Fit, FormName, Options, fit};
@@ -68,14 +69,12 @@ impl Route {
             }
             Opened::Curve(route) => return Ok(Self { file: Some(path.to_owned()), ..route }),
         };
-        let fit = fit(&given.poses, options).map_err(|error| no_curve(path, error))?;
-        let route = fit.route().map_err(|error| no_curve(path, error))?;
+        let none = |error: &dyn Display| no_curve(path, error, &given.notes);
+        let fit = fit(&given.poses, options).map_err(|error| none(&error))?;
+        let route = fit.route().map_err(|error| none(&error))?;
         let mut notes = given.notes;
         notes.push(Note::Info(told(&fit, given.poses.len())));
-        let [x, y, z] = route.mean_specific_force(GRAVITY);
-        notes.push(Note::Info(format!(
-            "an accelerometer along them reads {x:.2}, {y:.2}, {z:.2} m/s² on average"
-        )));
+        notes.extend(route.felt(GRAVITY).suspicion(route.span_ns.0).map(Note::Warning));
         Ok(Self { file: Some(path.to_owned()), notes, ..route })
     }
 
@@ -147,20 +146,31 @@ impl Route {
         self.ask(gravity, |along| along.at(t_ns))
     }
 
-    /// What an accelerometer along it reads on average under this gravity, body axes, m/s²: the mean over the middles
-    /// of equal parts of the route, four to an interval if those are not too many.
+    /// What an IMU along it feels under this gravity in m/s², looked at in the middles of equal parts of the route, four
+    /// to an interval if those are not too many.
     #[must_use]
-    pub fn mean_specific_force(&self, gravity: f64) -> [f64; 3] {
+    pub fn felt(&self, gravity: f64) -> FeltAlong {
         const MOST: u64 = 100_000;
         let (begin, end) = self.span_ns;
         let length = end.abs_diff(begin);
         let parts = (4 * length / u64::from(self.knots.step_ns())).clamp(1, MOST);
-        let sum = (0..parts).fold(Vector3::zeros(), |sum, part| {
+        let mut felt = FeltAlong::default();
+        for part in 0..parts {
             let middle = u128::from(length) * u128::from(2 * part + 1) / u128::from(2 * parts);
             let t_ns = begin.saturating_add_unsigned(middle as u64);
-            sum + Vector3::from(self.kinematics(gravity, t_ns, 0.0).specific_force)
-        });
-        (sum / parts as f64).into()
+            let Kinematics { specific_force, angular_rate, .. } =
+                self.kinematics(gravity, t_ns, 0.0);
+            for (mean, force) in felt.mean_specific_force.iter_mut().zip(specific_force) {
+                *mean += force / parts as f64;
+            }
+            let largest = |[x, y, z]: [f64; 3], before: (f64, i64)| {
+                let size = x.hypot(y).hypot(z);
+                if size > before.0 { (size, t_ns) } else { before }
+            };
+            felt.largest_force = largest(specific_force, felt.largest_force);
+            felt.largest_rate = largest(angular_rate, felt.largest_rate);
+        }
+        felt
     }
 
     /// What an ideal sensor feels `offset_s` after an instant of the poses' clock.

@@ -57,7 +57,7 @@ fn a_fit_says_how_far_it_is_and_what_else_there_is() {
     let flight = Flight::new(20);
     let said = flight.fine("spline fit @poses.tum -o @a.spline --spacing 0.05 --plots @plots");
     for words in [
-        "401 poses in 20 s, 20.00 a second",
+        "401 poses in 20.00 s, 20.00 a second",
         "curve: plain, 403 control points 0.05000 s apart, through every pose",
         "From poses to the curve",
         "The poses jitter by",
@@ -143,6 +143,18 @@ fn a_sampled_curve_is_a_truth_and_its_imu_integrates_to_it() {
     let json: Value = serde_json::from_str(&said.out).expect("JSON");
     let error = json["rules"][0]["errors"]["position_final_m"].as_f64().expect("a number");
     assert!(error < 2e-3, "{error}");
+}
+
+#[test]
+fn a_pose_that_jumps_is_told_of() {
+    let flight = Flight::new(5);
+    let text = fs::read_to_string(flight.at("poses.tum")).expect("written");
+    let row = text.lines().nth(50).expect("a row");
+    let mut fields: Vec<_> = row.split(' ').collect();
+    fields[1] = "5.5";
+    flight.put("jump.tum", &text.replacen(row, &fields.join(" "), 1));
+    let said = flight.fine("spline fit @jump.tum -o @x");
+    assert!(said.err.contains("s after the start: do poses jump there"), "{}", said.err);
 }
 
 #[test]

@@ -8,6 +8,11 @@ use crate::live::Message;
 /// (ticks in a second, the stretch before, a nominal rate) is better if it is not further off.
 const KNOWN: f64 = 4e-3;
 
+/// And only if it was seen for so long, ns, in so many bursts: what is read faster had waited for its
+/// reader, and shows how fast that is.
+const SEEN_NS: i64 = 1_500_000_000;
+const SEEN_BURSTS: usize = 16;
+
 /// A counter that got so far ahead of the host, ns, was set, or began anew.
 const AHEAD_NS: f64 = 1e9;
 
@@ -48,9 +53,14 @@ pub(super) fn from(
     let known = before.filter(|b| b.source() == source).map(Track::unit_ns);
     let nominal = nominal_rate.map(|rate| 1e9 / (rate * stride as f64));
     let known = known.or(tick_ns).or(nominal);
-    let measured = slope(&points);
+    let ends = ends_of_bursts(&points);
+    let measured = slope(&ends);
+    let seen_ns = held.last().map_or(0, |(last_ns, _)| last_ns.saturating_sub(*origin_ns));
+    let is_seen = seen_ns >= SEEN_NS && ends.len() >= SEEN_BURSTS;
     let unit_ns = match (known, measured) {
-        (Some(known), Some(measured)) if (measured / known - 1.0).abs() > KNOWN => measured,
+        (Some(known), Some(measured)) if is_seen && (measured / known - 1.0).abs() > KNOWN => {
+            measured
+        }
         (Some(known), _) => known,
         (None, Some(measured)) => measured,
         (None, None) => 1e9 / stride as f64,
@@ -95,15 +105,20 @@ fn steps(held: &[(i64, Message)], source: Source) -> Vec<u64> {
     held.iter().map(step).collect()
 }
 
-/// Host time of a unit, ns: the median slope between the ends of bursts in the first and the last third
-/// (Theil 1950), of the latest message of each burst, which waited least.
-fn slope(points: &[(f64, f64)]) -> Option<f64> {
+/// The latest message of each burst, which waited least.
+fn ends_of_bursts(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let last_of_burst = |pair: &[(f64, f64)]| match pair {
         [a, b] if a.1 < b.1 => Some(*a),
         _ => None,
     };
     let mut ends: Vec<(f64, f64)> = points.windows(2).filter_map(last_of_burst).collect();
     ends.extend(points.last());
+    ends
+}
+
+/// Host time of a unit, ns: the median slope between the ends of bursts in the first and the last third
+/// (Theil 1950).
+fn slope(ends: &[(f64, f64)]) -> Option<f64> {
     let third = ends.len().div_ceil(3);
     let (early, late) = (ends.get(..third)?, ends.get(ends.len() - third..)?);
     // A few dozen of each are enough, and few enough to be compared all with all.

@@ -117,6 +117,29 @@ fn a_pause_of_the_reader_loses_nothing() {
 }
 
 #[test]
+fn a_reader_that_begins_late_does_not_hurry_the_sensors_clock() {
+    // 8 kHz by ticks: what was sent in the first 0.6 s is read within 22 ms.
+    let at = |k: i64| match k * 125_000 {
+        sent if sent < 600 * MS => 600 * MS + (sent / (28 * MS) + 1) * MS,
+        sent => read(sent).max(623 * MS),
+    };
+    let (clock, all) = taken((0..80_000).map(|k| (at(k), with_ticks(k as u64 * 125, None))));
+    assert_eq!((lost(&all), clock.status().restarts), (vec![], 0));
+    let mut steps = all.windows(2).map(|w| w[1].stamp_ns - w[0].stamp_ns);
+    assert!(steps.all(|s| (s - 125_000).abs() < 250), "1000 ppm, and the rate's");
+}
+
+#[test]
+fn what_waited_for_seconds_begins_anew_a_few_times() {
+    // 8 kHz; the reader sleeps for 3 s, then has all that waited within 0.2 s: anew once a second of it at most.
+    let sent = (0..80_000_i64).map(|k| (k, k * MS / 8));
+    let arrivals = sent.map(|(k, t)| (k, if t < 3200 * MS { 3000 * MS + t / 16 } else { t }));
+    let (clock, _) = taken(arrivals.map(|(k, t)| (t, with_ticks(k as u64 * 125, None))));
+    let status = clock.status();
+    assert!(status.lost == 0 && status.restarts <= 3, "{status:?}");
+}
+
+#[test]
 fn hours_of_silence() {
     let hours = 7 * 3600 * 1000 * MS;
     let at = |k: i64| if k < 4000 { k * 10 * MS } else { k * 10 * MS + hours };

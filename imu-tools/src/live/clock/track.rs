@@ -30,6 +30,9 @@ const FASTEST: f64 = 1e6;
 /// time since the last), a counter was set.
 const AHEAD_NS: f64 = 50e6;
 
+/// Before the first block is seen: what waited for its reader was sent long before.
+const UNKNOWN_NS: f64 = 1e9;
+
 /// A silence, ns, in which a counter may have gone round.
 const SILENCE_NS: i64 = 1_000_000_000;
 
@@ -87,6 +90,8 @@ pub(super) struct Track {
     unit_ns: f64,
     tick_ns: Option<f64>,
     reading: Option<Reading>,
+    /// A message may seem to be sent so long after it was read, ns: as far as the line is known to be too late.
+    ahead_ns: f64,
     /// Units passed, up to the last message.
     units: u64,
     last_arrival_ns: i64,
@@ -123,6 +128,7 @@ impl Track {
             unit_ns: start.unit_ns,
             tick_ns: start.tick_ns,
             reading: start.reading,
+            ahead_ns: UNKNOWN_NS,
             units: 0,
             last_arrival_ns: start.origin_ns,
             since: 0.0,
@@ -173,6 +179,7 @@ impl Track {
     /// Moves the line, ns.
     pub fn shift(&mut self, by_ns: f64) {
         self.offset += by_ns;
+        self.ahead_ns += by_ns.max(0.0);
     }
 
     /// Sensor time of a number of units, s.
@@ -236,7 +243,7 @@ impl Track {
         }
         units = units.saturating_add(std::mem::take(&mut self.passed_over));
         let late = self.late(arrival_ns, self.units.saturating_add(units));
-        if self.source != Source::Arrival && late < -AHEAD_NS - 1e-4 * silence as f64 {
+        if self.source != Source::Arrival && late < -self.ahead_ns - 1e-4 * silence as f64 {
             return None;
         }
         if std::mem::take(&mut self.reopened) && late > SET_NS + 1e-4 * silence as f64 {
@@ -275,6 +282,7 @@ impl Track {
         let whole = t - self.block_since >= BLOCK_S && read_ns >= BLOCK_READ_NS;
         if whole && self.block_messages >= BLOCK_MESSAGES {
             let block_s = t - self.block_since;
+            self.ahead_ns = AHEAD_NS + (-self.earliest_late).max(0.0);
             self.block_messages = 0;
             self.earliest.cycle = strip::cycle_of(&self.bursts);
             self.bursts.clear();

@@ -15,7 +15,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use crate::error::Error;
-use crate::recording::{Block, ReadOptions};
+use crate::recording::{Block, ReadOptions, SampleKind};
 pub use serial::available;
 
 /// Pieces that wait to be taken, at most: some seconds of any sensor.
@@ -34,8 +34,8 @@ pub enum Arrival {
         /// What.
         bytes: Vec<u8>,
     },
-    /// Samples of a recording.
-    Samples(Block),
+    /// Samples of a recording, and what they are.
+    Samples(Block, SampleKind),
     /// The device went away, in words; it is waited for.
     Gone(String),
     /// It is there again.

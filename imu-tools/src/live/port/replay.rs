@@ -40,6 +40,7 @@ fn play(
             Err(error) => return Some(Err(error)),
             Ok(false) => return Some(Ok(())),
             Ok(true) if speed > 0.0 => {
+                let samples = source.samples().unwrap_or_default();
                 let (began, first_ns) = match (start, first(&block)) {
                     (Some(start), _) => start,
                     (None, Some(first_ns)) => (Instant::now(), first_ns),
@@ -50,12 +51,15 @@ fn play(
                     let passed = began.elapsed().as_secs_f64() * speed * 1e9;
                     let now = before(&mut block, first_ns.saturating_add(passed as i64));
                     if !now.is_empty() {
-                        to.send(Arrival::Samples(now)).ok()?;
+                        to.send(Arrival::Samples(now, samples)).ok()?;
                     }
                     std::thread::sleep(PACE);
                 }
             }
-            Ok(true) => to.send(Arrival::Samples(block)).ok()?,
+            Ok(true) => {
+                let samples = source.samples().unwrap_or_default();
+                to.send(Arrival::Samples(block, samples)).ok()?;
+            }
         }
     }
 }

@@ -7,8 +7,10 @@
 //! 9.80665 m/s². The BWT61's older formula of temperature is not known by its frames, and not used. Frames
 //! of Bluetooth modules (0x55 0x61) have no checksum and are left out.
 //!
-//! Rate follows acceleration at once; both become one message, stamped by the time before it, if one
-//! is sent. The checksum is weak, one wrong frame in 256 passes it, and nothing counts frames.
+//! A device sends its frames in cycles: time, acceleration, rate, each if it is set to. A cycle is one message,
+//! and one that lacks a frame which those before it had is none: its halves would count as two samples, and
+//! frames of two cycles never make one. The checksum is weak, one wrong frame in 256 passes it, and nothing
+//! counts frames.
 
 use super::fields::{le, u8};
 use super::framer::{Check, Wire, not_before};
@@ -26,12 +28,40 @@ const LAST_TYPE: u8 = 0x5F;
 const FORCE_STEP: f64 = 16.0 * 9.80665 / 32768.0;
 const RATE_STEP: f64 = 2000.0 * std::f64::consts::PI / 180.0 / 32768.0;
 
+/// So many cycles in a row that lack a frame: the device was set to send others.
+const CHANGED: u8 = 32;
+
 /// WitMotion's frames, and the message that they build up.
 #[derive(Default)]
 pub struct WitMotion {
     time: Option<Ticks>,
     /// An acceleration that waits for its rate.
     waiting: Option<Message>,
+    /// Whether cycles have a time, an acceleration and a rate.
+    usual: [bool; 3],
+    /// Cycles in a row that lacked one of them.
+    incomplete: u8,
+}
+
+impl WitMotion {
+    /// Hands a cycle out if it has all that cycles have.
+    fn hand(&mut self, cycle: Message, each: &mut dyn FnMut(Message)) {
+        let has = [cycle.ticks.is_some(), cycle.accelerometer.is_some(), cycle.gyroscope.is_some()];
+        let is_whole = has.iter().zip(self.usual).all(|(has, usual)| *has || !usual);
+        if is_whole || self.incomplete >= CHANGED {
+            (self.usual, self.incomplete) = (has, 0);
+            each(cycle);
+        } else {
+            self.incomplete += 1;
+        }
+    }
+
+    /// Ends a cycle that has no rate, or has it not yet.
+    fn end_waiting(&mut self, each: &mut dyn FnMut(Message)) {
+        if let Some(cycle) = self.waiting.take() {
+            self.hand(cycle, each);
+        }
+    }
 }
 
 impl Wire for WitMotion {
@@ -49,32 +79,34 @@ impl Wire for WitMotion {
 
     fn take(&mut self, frame: &[u8], each: &mut dyn FnMut(Message)) {
         let view = View(frame);
-        let before = self.waiting.take();
         match view.kind() {
             RATE => {
-                let gyroscope = Some(view.rate());
-                let message = before.unwrap_or(Message { ticks: self.time, ..Message::default() });
-                each(Message { gyroscope, ..message });
-                return;
+                let before = self.waiting.take();
+                let cycle = before
+                    .unwrap_or_else(|| Message { ticks: self.time.take(), ..Message::default() });
+                self.hand(Message { gyroscope: Some(view.rate()), ..cycle }, each);
             }
             ACCELERATION => {
+                self.end_waiting(each);
                 self.waiting = Some(Message {
                     accelerometer: Some(view.acceleration()),
                     celsius: Some(view.celsius()),
-                    ticks: self.time,
+                    ticks: self.time.take(),
                     ..Message::default()
                 });
             }
-            TIME => self.time = view.time(),
-            _ => {}
+            TIME => {
+                self.end_waiting(each);
+                self.time = view.time();
+            }
+            _ => self.end_waiting(each),
         }
-        before.into_iter().for_each(each);
     }
 
     fn broken(&mut self, _refused: &[u8], each: &mut dyn FnMut(Message)) {
-        // The time behind a damaged frame may be that of the cycle before.
+        // What was damaged may have been the frame that began the next cycle.
         self.time = None;
-        self.waiting.take().into_iter().for_each(each);
+        self.end_waiting(each);
     }
 }
 
@@ -225,18 +257,34 @@ mod tests {
         }
     }
 
-    /// An acceleration whose rate is lost must not be joined with the rate of the cycle after it.
+    /// Of one cycle the rate is damaged, of the next the acceleration, of a third the time: no message has parts of
+    /// two of them, and none is half.
     #[test]
-    fn a_damaged_frame_joins_no_others() {
-        let mut bytes = Vec::new();
-        let still = Message { accelerometer: Some([0.0; 3]), ..Message::default() };
-        let sent = Message { gyroscope: Some([1.0, 0.0, 0.0]), ..still };
-        encode(&sent, &mut bytes);
-        encode(&sent, &mut bytes);
-        bytes[LENGTH + 3] ^= 1;
-        bytes[2 * LENGTH + 3] ^= 1;
+    fn a_cycle_that_is_not_whole_is_no_message() {
+        let (mut bytes, cycle) = (Vec::new(), 3 * LENGTH);
+        (0..6).for_each(|i| encode(&tests::message(i), &mut bytes));
+        let whole = tests::decoded(Protocol::WitMotion, &bytes);
+        for place in [cycle + 2 * LENGTH, 2 * cycle + LENGTH, 3 * cycle] {
+            bytes[place + 3] ^= 1;
+        }
         let messages = tests::decoded(Protocol::WitMotion, &bytes);
-        let has = |m: &Message| (m.accelerometer.is_some(), m.gyroscope.is_some());
-        assert_eq!(messages.iter().map(has).collect::<Vec<_>>(), [(true, false), (false, true)]);
+        assert_eq!(messages, [whole[0], whole[4], whole[5]]);
+    }
+
+    /// A device that is set to send one sensor sends whole cycles, from the first on or after a while.
+    #[test]
+    fn a_device_may_send_one_sensor_alone() {
+        let both = tests::message(1);
+        for alone in [Message { gyroscope: None, ..both }, Message { accelerometer: None, ..both }]
+        {
+            let mut bytes = Vec::new();
+            (0..40).for_each(|_| encode(&alone, &mut bytes));
+            assert_eq!(tests::decoded(Protocol::WitMotion, &bytes).len(), 40);
+            let mut changed = Vec::new();
+            encode(&both, &mut changed);
+            changed.extend_from_slice(&bytes);
+            let messages = tests::decoded(Protocol::WitMotion, &changed);
+            assert_eq!(messages.len(), 1 + 40 - usize::from(CHANGED));
+        }
     }
 }

@@ -51,7 +51,11 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, sensor: &SensorNoise, colo
     // Intervals of the longest averaging times may be wide: a decade of them is enough.
     let (bottom, top) = (least(|p| p.low.max(p.value - 0.5)), most(|p| p.high.min(p.value + 0.5)));
     let unit = sensor.kind.unit();
-    let title = format!(" {} Allan deviation, {unit}, over s ", sensor.kind.name());
+    let short = format!(" {} Allan deviation, {unit}", sensor.kind.name());
+    let whole = format!("{short}, over s ");
+    // The corner takes a column.
+    let fits = whole.chars().count() < usize::from(area.width);
+    let title = if fits { whole } else { short };
     let block = Block::new().borders(Borders::TOP | Borders::LEFT).title(title);
     if !(left < right && bottom.is_finite() && top.is_finite()) {
         frame.render_widget(block, area);
@@ -70,7 +74,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, sensor: &SensorNoise, colo
                     draw_curve(canvas, points, colour(axis));
                 }
                 canvas.layer();
-                print_scales(canvas, x, y);
+                print_scales(canvas, [x[0], left, x[1]], y);
                 for (axis, points) in curves.iter().enumerate() {
                     print_letters(canvas, points, axis, colour(axis));
                 }
@@ -100,13 +104,13 @@ fn print_letters(canvas: &mut Context<'_>, points: &[Point], axis: usize, colour
     }
 }
 
-/// Powers of ten along the left and the lower edge.
-fn print_scales(canvas: &mut Context<'_>, x: [f64; 2], y: [f64; 2]) {
+/// Powers of ten along the left and the lower edge, whose corner is left free.
+fn print_scales(canvas: &mut Context<'_>, [edge, left, right]: [f64; 3], y: [f64; 2]) {
     let decades = |[from, to]: [f64; 2]| from.ceil() as i32..=to.floor() as i32;
     for power in decades(y) {
-        canvas.print(x[0], f64::from(power), format!("1e{power}"));
+        canvas.print(edge, f64::from(power), format!("1e{power}"));
     }
-    for power in decades(x) {
+    for power in decades([left, right]) {
         canvas.print(f64::from(power), y[0], format!("1e{power}"));
     }
 }

@@ -32,7 +32,9 @@ const PIECE: usize = 256 * 1024;
 pub struct CsvWriter {
     output: Output,
     text: Vec<u8>,
-    temperature: bool,
+    contents: Contents,
+    /// The header is written: with the first samples, which show what they are.
+    begun: bool,
 }
 
 impl CsvWriter {
@@ -54,11 +56,15 @@ impl CsvWriter {
 
     /// Starts the CSV that `output` will be.
     pub(crate) fn write_to(output: Output, contents: Contents) -> Self {
-        let Contents { samples, temperature } = contents;
-        let mut text = Vec::with_capacity(PIECE + 1024);
-        text.extend_from_slice(header(samples).as_bytes());
-        text.extend_from_slice(if temperature { b",temperature [degC]\n" } else { b"\n" });
-        Self { output, text, temperature }
+        Self { output, text: Vec::with_capacity(PIECE + 1024), contents, begun: false }
+    }
+
+    fn begin(&mut self) {
+        if !std::mem::replace(&mut self.begun, true) {
+            let Contents { samples, temperature } = self.contents;
+            self.text.extend_from_slice(header(samples).as_bytes());
+            self.text.extend_from_slice(if temperature { b",temperature [degC]\n" } else { b"\n" });
+        }
     }
 
     fn hand_on(&mut self) -> Result<(), Error> {
@@ -106,12 +112,13 @@ pub(crate) fn push_integer(text: &mut Vec<u8>, number: i64) {
 
 impl Sink for CsvWriter {
     fn write_block(&mut self, block: &Block) -> Result<(), Error> {
+        self.begin();
         let mut temperatures = block.temperature.iter().peekable();
         merge(block, |stamp_ns, rate, force| {
             push_integer(&mut self.text, stamp_ns);
             push_sensor(&mut self.text, rate);
             push_sensor(&mut self.text, force);
-            if self.temperature {
+            if self.contents.temperature {
                 while temperatures.next_if(|t| t.stamp_ns < stamp_ns).is_some() {}
                 self.text.push(b',');
                 if let Some(now) = temperatures.next_if(|t| t.stamp_ns == stamp_ns) {
@@ -129,7 +136,12 @@ impl Sink for CsvWriter {
         self.output.sync()
     }
 
+    fn samples_are(&mut self, samples: SampleKind) {
+        self.contents.samples = samples;
+    }
+
     fn finish(mut self: Box<Self>) -> Result<(), Error> {
+        self.begin();
         self.hand_on()?;
         self.output.finish()
     }
@@ -138,6 +150,26 @@ impl Sink for CsvWriter {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_samples_are_is_said_with_the_first_of_them() {
+        use crate::recording::Sample;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        let output = Output::growing(&path).unwrap();
+        let mut sink = Box::new(CsvWriter::write_to(output, Contents::default()));
+        sink.flush().unwrap();
+        sink.samples_are(SampleKind::Mean);
+        let sample = Sample { stamp_ns: 7, value: [0.5; 3] };
+        let block = Block { gyroscope: vec![sample], ..Block::default() };
+        sink.write_block(&block).unwrap();
+        sink.samples_are(SampleKind::Instantaneous);
+        sink.write_block(&block).unwrap();
+        sink.finish().unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let header = header(SampleKind::Mean);
+        assert_eq!(text, format!("{header}\n7,0.5,0.5,0.5,,,\n7,0.5,0.5,0.5,,,\n"));
+    }
 
     #[test]
     fn integers_at_their_ends() {

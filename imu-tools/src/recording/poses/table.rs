@@ -12,6 +12,8 @@ use crate::recording::csv::dialect::Dialect;
 use crate::recording::csv::number;
 use crate::recording::input::{Input, LARGEST_PIECE};
 
+/// Seconds since 1970 beyond which no stamp is: the nanoseconds of 64 bits end.
+const LATEST_S: i64 = 9_200_000_000;
 /// So much of the start is looked at.
 const AHEAD: usize = 64 * 1024;
 
@@ -120,9 +122,9 @@ impl Format {
         let in_nanoseconds = |line: &[u8]| Self { exponent: 0, ..Self::of_tum(line) }.pose(line);
         if lines.clone().any(|l| {
             Self::plain(l).is_none()
-                && in_nanoseconds(l).is_some_and(|pose| pose.stamp_ns > 1 << 50)
+                && in_nanoseconds(l).is_some_and(|pose| pose.stamp_ns > LATEST_S)
         }) {
-            return ": the first column looks like nanoseconds, and TUM's stamps are seconds"
+            return ": the first column is beyond any time in seconds, and TUM's stamps are seconds"
                 .into();
         }
         let rows = lines.filter_map(|line| {

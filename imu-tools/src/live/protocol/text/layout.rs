@@ -12,6 +12,8 @@ use crate::recording::{ForceUnit, RateUnit, ReadOptions, TimeUnit};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     columns: Vec<Column>,
+    /// Fields of a row, where a header told them all.
+    width: Option<usize>,
     /// Of the first row; `None` before it.
     dialect: Option<Dialect>,
     /// Unit of time, where it is told.
@@ -67,7 +69,8 @@ impl Layout {
             Some(map) => Columns::from_map(map, &names),
             None => Columns::live_from_names(&names),
         };
-        Self::new(columns.ok()?, options).ok()
+        let layout = Self::new(columns.ok()?, options).ok()?;
+        Some(Self { width: Some(names.len().max(layout.columns.len())), ..layout })
     }
 
     fn new(found: Columns, options: &ReadOptions) -> Result<Self, String> {
@@ -85,6 +88,7 @@ impl Layout {
             rate.is_none() && has(Column::Rate(0)) || force.is_none() && has(Column::Force(0));
         Ok(Self {
             dialect: None,
+            width: None,
             time,
             rate: rate.unwrap_or(RateUnit::RadPerS),
             force: force.unwrap_or(ForceUnit::MPerS2),
@@ -122,8 +126,13 @@ impl Layout {
                 Column::Temperature => celsius = value(dialect, field),
             }
         }
-        // The line end between two lines may be lost.
-        if fields.count() + 1 >= self.columns.len() {
+        // Of two lines, the end of one and the line end between them may be lost.
+        let columns = self.columns.len();
+        let joined = match self.width {
+            Some(width) => fields.skip(width - columns).any(|field| !field.is_empty()),
+            None => fields.count() + 1 >= columns,
+        };
+        if joined {
             return None;
         }
         let halves = seconds.zip(nanoseconds);

@@ -75,6 +75,9 @@ fn damaged_lines_are_left_out_whole() {
         "1,2,3,4,5\n",
         "1,2,x,4,5,6\n",
         "1,2,3,4,5,61,2,3,4,5,6\n",
+        // Two lines, the end of the first lost.
+        "1,21,2,3,4,5,6\n",
+        "1,2,3,4,51,2,3,4,5,6\n",
         "1,2,3,4,\u{7},6\n",
         &format!("{}\n", "1".repeat(1500)),
     ] {
