@@ -126,7 +126,8 @@ fn check(poses: &[TimedPose]) {
     let mut control = vec![Pose::identity(); poses.len() + 2];
     through::<OneSided>(poses, &mut control);
     let knots = Spacing::Every(STEP_NS * TO_A_KNOT as u32);
-    let fitted = fit(poses, &Options { form: FormName::Plain, spacing: knots, smoothing_s: 0.0 });
+    let fitted =
+        fit(poses, &Options { form: Some(FormName::Plain), spacing: knots, smoothing_s: 0.0 });
     let near = |control: &[Pose<f64>], band: &[V3], limit: f64| {
         assert_eq!(control.len(), band.len());
         for (point, values) in control.iter().zip(band) {
@@ -177,7 +178,7 @@ fn fits(c: &mut Criterion) {
     });
     for (name, form) in [("plain", FormName::Plain), ("symmetric", FormName::Symmetric)] {
         group.bench_function(format!("least squares, {name}"), |b| {
-            b.iter(|| fit(black_box(&poses), &least_squares(form)).expect("a fit"));
+            b.iter(|| fit(black_box(&poses), &least_squares(Some(form))).expect("a fit"));
         });
     }
     group.finish();

@@ -28,7 +28,7 @@ fn print(arguments: &[String]) -> Result<(), Error> {
     };
     let number = |at: usize| arguments.get(at).and_then(|text| text.parse::<f64>().ok());
     for form in [FormName::Plain, FormName::Symmetric] {
-        let mut options = Options { form, ..Options::default() };
+        let mut options = Options { form: Some(form), ..Options::default() };
         if let Some(seconds) = number(1) {
             options.spacing = asked::every(seconds)?;
         }

@@ -4,8 +4,9 @@
 //! interval. Source: Sommer, Usenko, Schubert, Demmel & Cremers (2020), "Efficient derivative computation for
 //! cumulative B-splines on Lie groups", eq. (19) to (24).
 //!
-//! `K` is the number of intervals that act, one less than the order: the recurrences of this module take any `K`, and
-//! another order is another constructor here.
+//! `K` is the number of intervals that act, one less than the order. The recurrences of `so3` and these weights take any
+//! `K`; what is fixed to the cubic are [`Knots`](super::Knots)' span, the window of four control points, and the
+//! time-symmetric form.
 
 use crate::Real;
 
@@ -51,7 +52,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The matrix form, MATHS of Sommer et al. (2020), eq. (19): C(1, u, u², u³)ᵀ, and what follows from it. A few
+        /// The matrix form of Sommer et al. (2020), eq. (19): C(1, u, u², u³)ᵀ, and what follows from it. A few
         /// roundings of numbers up to 1.
         #[test]
         fn they_are_the_published_ones(u in 0.0..=1.0_f64) {

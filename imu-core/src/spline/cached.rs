@@ -12,7 +12,8 @@ use crate::vector::within;
 use crate::{Error, Real, so3};
 use nalgebra::{Quaternion, Vector3};
 
-/// A control pose, and the turn and the way to the next one. Made by [`cache`]; a default one is at the origin.
+/// A control pose, and the turn and the way to the next one. Made by [`cache`]; a default one waits for that, and makes no
+/// curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knot<T: Real> {
     pose: Pose<T>,
@@ -40,11 +41,13 @@ impl<T: Real> Knot<T> {
 
 impl<T: Real> Default for Knot<T> {
     fn default() -> Self {
-        Self::between::<T>(&Pose::identity(), &Pose::identity())
+        let nowhere = Vector3::from([T::from_f64(f64::NAN); 3]);
+        Self { pose: Pose::identity(), turn: Turn::new(nowhere), step: nowhere }
     }
 }
 
-/// A control pose, and the screw to the next one. Made by [`cache_screws`]; a default one is at the origin.
+/// A control pose, and the screw to the next one. Made by [`cache_screws`]; a default one waits for that, and makes no
+/// curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScrewKnot<T: Real> {
     pose: Pose<T>,
@@ -71,7 +74,9 @@ impl<T: Real> ScrewKnot<T> {
 
 impl<T: Real> Default for ScrewKnot<T> {
     fn default() -> Self {
-        Self::between::<T>(&Pose::identity(), &Pose::identity())
+        let nowhere = Vector3::from([T::from_f64(f64::NAN); 3]);
+        let screw = Screw::new(Twist { linear: nowhere, angular: nowhere });
+        Self { pose: Pose::identity(), screw }
     }
 }
 

@@ -82,16 +82,22 @@ fn cubics_and_steady_turns_come_back() {
     }
 }
 
+/// Poses, each turned against the one before.
+fn turned_by(turns: &[[f64; 3]]) -> Vec<Pose<f64>> {
+    let mut poses = std::vec![Pose::identity()];
+    for turn in turns {
+        let last = poses[poses.len() - 1].rotation();
+        let next = so3::product(&last, &so3::exp(Vector3::from(*turn)));
+        poses.push(Pose::new(next, Vector3::from(*turn)).unwrap());
+    }
+    poses
+}
+
 proptest! {
     /// Turns of up to 0.087 rad between neighbours, in any direction: a factor of 0.2 a sweep, or better.
     #[test]
     fn turns_settle(turns in prop::collection::vec(prop::array::uniform3(-0.05..0.05), 3..30)) {
-        let mut poses = std::vec![Pose::<f64>::identity()];
-        for turn in turns {
-            let last = poses[poses.len() - 1].rotation();
-            let next = so3::product(&last, &so3::exp(Vector3::from(turn)));
-            poses.push(Pose::new(next, Vector3::from(turn)).unwrap());
-        }
+        let poses = turned_by(&turns);
         let (control, found) = interpolated::<f64, OneSided>(&poses);
         let (_, off) = distance::<f64, OneSided>(&poses, &control);
         prop_assert!(off < 1e-14 && found.sweeps < 40, "{off} {found:?}");
@@ -100,12 +106,7 @@ proptest! {
     /// Turns of up to a radian: what is said of them is true.
     #[test]
     fn large_turns_settle_or_are_told_of(turns in prop::collection::vec(prop::array::uniform3(-0.5..0.5), 3..30)) {
-        let mut poses = std::vec![Pose::<f64>::identity()];
-        for turn in turns {
-            let last = poses[poses.len() - 1].rotation();
-            let next = so3::product(&last, &so3::exp(Vector3::from(turn)));
-            poses.push(Pose::new(next, Vector3::from(turn)).unwrap());
-        }
+        let poses = turned_by(&turns);
         let (mut control, mut scratch) =
             (std::vec![Pose::identity(); poses.len() + 2], std::vec![Vector3::zeros(); poses.len()]);
         // Ends are extrapolated: of turns that change at random, by more than half a turn at times.

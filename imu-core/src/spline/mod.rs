@@ -17,6 +17,8 @@
 //! that error out but for h⁴, from three neighbours and without a solve, and [`Stream`] does it as poses come in. (On
 //! screws it is [`quasi_interpolant_on_screws`].)
 //!
+//! Cubics only; there are no derivatives by control points yet.
+//!
 //! Control points are the caller's; constructors check them once. Where a curve is asked more than a few times,
 //! [`cache`] works the logarithms out beforehand: [`Knot`] and [`ScrewKnot`] are control points, too. In `f32` that is
 //! also what keeps acceleration right: a difference of positions that are 20 m away has lost 12 bits, [`cache`] forms

@@ -48,8 +48,11 @@ impl<'a, T: Real, C: Attitudes<T> + Positions<T>, F: Form<T>> SplitCurve<'a, T, 
         Ok(Self::of_checked(knots, points))
     }
 
-    /// Of control poses, as many as there are knots, that made a curve before: in no time, for who cannot keep the
-    /// curve beside them. They are not looked at again; of others the curve is wrong, or an error.
+    /// Of as many control poses as there are knots, of which [`from_control_points`](Self::from_control_points) made a
+    /// curve before: at no cost, where control points are owned and the curve, which borrows them, cannot be kept.
+    ///
+    /// Nothing is checked. Of other control points an evaluation is wrong or not a number, or an error where they are
+    /// fewer than the knots.
     #[must_use]
     #[inline]
     pub fn of_checked(knots: Knots<T>, points: &'a [C]) -> Self {

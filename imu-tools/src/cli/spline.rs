@@ -50,9 +50,9 @@ enum What {
 /// How a curve is made of poses; of no use where the file is a curve already.
 #[derive(Args, Debug)]
 struct How {
-    /// Which curve of attitudes: plain or symmetric
-    #[arg(long, value_name = "FORM", default_value = "plain")]
-    form: FormName,
+    /// Which curve of attitudes: plain or symmetric [default: plain]
+    #[arg(long, value_name = "FORM")]
+    form: Option<FormName>,
     /// Seconds between knots: the nearest equal part of the whole is taken [default: as the poses]
     #[arg(long, value_name = "SECONDS", conflicts_with = "within", allow_negative_numbers = true)]
     spacing: Option<f64>,

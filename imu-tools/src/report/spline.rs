@@ -141,6 +141,7 @@ pub fn json(fitted: &Fitted) -> Value {
             "from_ns": first,
             "to_ns": last,
             "interpolates": fitted.fit.interpolates,
+            "bridged_gaps": fitted.fit.bridged,
         },
         // The one that was made, then others.
         "choices": fitted.choices.iter().map(choice).collect::<Vec<_>>(),

@@ -15,7 +15,7 @@ use super::check::Bad;
 use super::{Path, Rate, Scene};
 use crate::error::Error;
 use crate::recording::{Note, SampleKind};
-use crate::spline::{FormName, Options, Route, Spacing, asked};
+use crate::spline::{Options, Route, Spacing, asked};
 
 /// Values in the place of those of a scene file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,7 +56,7 @@ impl Keys {
         };
         let smoothing = smooth_hz.map(asked::smoothing_s).transpose();
         Ok(Options {
-            form: form.as_deref().map_or(Ok(FormName::Plain), str::parse)?,
+            form: form.as_deref().map(str::parse).transpose()?,
             spacing,
             smoothing_s: smoothing.map_err(|e| e.to_string())?.unwrap_or(0.0),
         })

@@ -4,6 +4,7 @@ use imu_core::so3;
 use super::*;
 use crate::recording::{Block, Source as _};
 use crate::scene::Simulator;
+use crate::spline::FormName;
 
 /// A folder with ten seconds of poses, ten a second from 100 s on, of a body that swings.
 fn folder() -> tempfile::TempDir {

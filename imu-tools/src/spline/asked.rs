@@ -18,7 +18,7 @@ impl FromStr for FormName {
 impl Default for Options {
     /// The plain curve, a control point for every pose, as smooth as that makes it.
     fn default() -> Self {
-        Self { form: FormName::Plain, spacing: Spacing::AsPoses, smoothing_s: 0.0 }
+        Self { form: None, spacing: Spacing::AsPoses, smoothing_s: 0.0 }
     }
 }
 

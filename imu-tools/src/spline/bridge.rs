@@ -16,11 +16,16 @@ const LONG: i64 = 16;
 /// Steps at both ends of a hole that are left to the curve.
 const MARGIN: i64 = 6;
 
+/// How many holes are bridged.
+pub(super) fn count(poses: &[TimedPose], step_ns: u32) -> usize {
+    let step = i64::from(step_ns);
+    poses.windows(2).filter(|two| steps_between(&two[0], &two[1], step) > LONG).count()
+}
+
 /// The poses, with more of them in every long hole, one a step.
 pub(super) fn bridged(poses: &[TimedPose], step_ns: u32) -> Cow<'_, [TimedPose]> {
     let step = i64::from(step_ns);
-    let is_long = |two: &[TimedPose]| steps_between(&two[0], &two[1], step) > LONG;
-    if !poses.windows(2).any(is_long) {
+    if count(poses, step_ns) == 0 {
         return Cow::Borrowed(poses);
     }
     let mut all = Vec::with_capacity(poses.len());

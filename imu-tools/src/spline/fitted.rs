@@ -51,6 +51,7 @@ impl Fitted {
         let fit = fit(&poses, options).map_err(|error| no_curve(path, &error, &notes))?;
         let route = fit.route().map_err(|error| no_curve(path, &error, &notes))?;
         let felt = route.felt(GRAVITY);
+        notes.extend(fit.gaps());
         notes.extend(felt.suspicion(route.span_ns().0).map(Note::Warning));
         Ok(Self {
             path: path.display().to_string(),

@@ -60,17 +60,23 @@ impl Jitter {
         Some(Self { position_m: deviation(positions)?, rotation_rad: deviation(rotations)? })
     }
 
-    /// What a fit makes of it: noise of this size is fitted in place of the poses. None where it decides no curve.
+    /// What a fit makes of it: noise of this size is fitted in the place of `poses`, of which those of `held` that are
+    /// no bridge are. None where it decides no curve.
     pub(super) fn on(
         self,
         solver: &LeastSquares,
         poses: &[TimedPose],
+        held: &[TimedPose],
         knots: &Knots<f64>,
     ) -> Option<JitterOfCurve> {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(1);
-        let noise: Vec<_> = poses
+        let mut given = poses.iter().peekable();
+        let noise: Vec<_> = held
             .iter()
-            .map(|_| Vector3::from([(); 3].map(|()| f64::standard_normal(&mut rng))))
+            .map(|pose| match given.next_if(|given| given.stamp_ns == pose.stamp_ns) {
+                Some(_) => Vector3::from([(); 3].map(|()| f64::standard_normal(&mut rng))),
+                None => Vector3::zeros(),
+            })
             .collect();
         let control = solver.vectors(&noise)?;
         let (mut acceleration, mut velocity, mut count) = (0.0, 0.0, 0.0);
@@ -79,12 +85,12 @@ impl Jitter {
             let [a, b, c, d] = [four[0], four[1], four[2], four[3]];
             for axis in 0..3 {
                 let [a, b, c, d] = [a[axis], b[axis], c[axis], d[axis]];
-                // Of an interval: acceleration is a straight line, velocity a parabola (Simpson's rule of its square).
+                // Of an interval: acceleration is a straight line, velocity a parabola.
                 let (begin, end) = (a - 2.0 * b + c, b - 2.0 * c + d);
                 acceleration += (begin * begin + begin * end + end * end) / 3.0;
                 let (begin, middle, end) =
                     ((c - a) / 2.0, (d - a + 5.0 * (c - b)) / 8.0, (d - b) / 2.0);
-                velocity += (begin * begin + 4.0 * middle * middle + end * end) / 6.0;
+                velocity += mean_square_of_parabola(begin, middle, end);
                 count += 1.0;
             }
         }
@@ -95,6 +101,11 @@ impl Jitter {
             angular_rate: self.rotation_rad * (velocity / count).sqrt() * rate,
         })
     }
+}
+
+/// The mean of p² over an interval, of a parabola p with these values at its beginning, middle and end.
+fn mean_square_of_parabola(b: f64, m: f64, e: f64) -> f64 {
+    (2.0 * (b * b + e * e + b * m + m * e) + 8.0 * m * m - b * e) / 15.0
 }
 
 /// Of the sixth divided difference at these instants, for noise of deviation 1 in deviation 1.
@@ -121,4 +132,22 @@ fn deviation(mut sizes: Vec<f64>) -> Option<f64> {
     let middle = sizes.len().checked_sub(1)? / 2;
     let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
     Some(*median / MEDIAN_OF_NORMAL)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ∫p² of p = 1, u, u² and 1 − 4u + 4u²: 1, 1/3, 1/5 and 1/5; sums of a few roundings.
+    #[test]
+    fn the_square_of_a_parabola_is_a_quartic() {
+        for ([b, m, e], wanted) in [
+            ([1.0, 1.0, 1.0], 1.0),
+            ([0.0, 0.5, 1.0], 1.0 / 3.0),
+            ([0.0, 0.25, 1.0], 0.2),
+            ([1.0, 0.0, 1.0], 0.2),
+        ] {
+            assert!((mean_square_of_parabola(b, m, e) - wanted).abs() < 1e-15);
+        }
+    }
 }

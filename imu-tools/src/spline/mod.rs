@@ -18,7 +18,7 @@
 //!     })
 //!     .collect::<Result<_, imu_core::Error>>()?;
 //! let within = Spacing::Within { position_m: 1e-3, rotation_rad: 1e-3 };
-//! let fit = fit(&poses, &Options { form: FormName::Symmetric, spacing: within, smoothing_s: 0.0 }).unwrap();
+//! let fit = fit(&poses, &Options { form: Some(FormName::Symmetric), spacing: within, smoothing_s: 0.0 }).unwrap();
 //! assert!(fit.error.largest_position_m < 1e-3 && fit.knots.step_ns() > 200_000_000);
 //! # Ok::<(), imu_core::Error>(())
 //! ```
@@ -55,6 +55,7 @@ use imu_core::se3::Pose;
 use imu_core::so3;
 use imu_core::spline::{Form, Knots, OneSided, TimeSymmetric};
 
+use crate::recording::Note;
 use least_squares::LeastSquares;
 
 /// The fewest poses that make a cubic curve.
@@ -92,8 +93,8 @@ impl FormName {
 /// How to fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Which curve.
-    pub form: FormName,
+    /// Which curve; the plain one where nothing is said.
+    pub form: Option<FormName>,
     /// Where its knots are.
     pub spacing: Spacing,
     /// τ in s: of what moves with 1/(2πτ) Hz half is left, of what moves twice as fast a 65th; 0: no smoothing beyond
@@ -119,6 +120,11 @@ pub enum FitError {
          look for poses that jump"
     )]
     Turn,
+    /// Numbers beyond those of a curve.
+    #[error(
+        "the control points of the curve would be no poses on Earth ({0}): look for poses that jump"
+    )]
+    Numbers(imu_core::Error),
     /// Numbers beyond what can be factored.
     #[error(
         "the poses do not decide a curve with knots {0} s apart; take them further apart, or smooth less"
@@ -133,9 +139,11 @@ pub enum FitError {
 }
 
 impl From<imu_core::Error> for FitError {
-    /// What is left to go wrong once stamps and knots are checked.
-    fn from(_: imu_core::Error) -> Self {
-        Self::Turn
+    fn from(error: imu_core::Error) -> Self {
+        match error {
+            imu_core::Error::OutOfRange("turn between neighbours") => Self::Turn,
+            other => Self::Numbers(other),
+        }
     }
 }
 
@@ -154,11 +162,26 @@ pub struct Fit {
     pub error: Distance,
     /// Whether it was made to go through every pose, in place of near.
     pub interpolates: bool,
+    /// Gaps between poses that are many knots long: crossed the straight way and by the shortest turn.
+    pub bridged: usize,
     /// What the poses' jitter makes of it; `None` where there are too few poses to tell.
     pub jitter: Option<JitterOfCurve>,
 }
 
 impl Fit {
+    /// What to tell of gaps that were bridged.
+    fn gaps(&self) -> Option<Note> {
+        let gaps = match self.bridged {
+            0 => return None,
+            1 => "a gap between poses is".to_owned(),
+            count => format!("{count} gaps between poses are"),
+        };
+        let step_s = f64::from(self.knots.step_ns()) / 1e9;
+        Some(Note::Warning(format!(
+            "{gaps} longer than 16 knots {step_s} s apart: crossed straight on, at an even rate; wider knots would bend"
+        )))
+    }
+
     /// The curve itself, as a file of it would be read.
     ///
     /// # Errors
@@ -180,7 +203,7 @@ pub fn fit(poses: &[TimedPose], options: &Options) -> Result<Fit, FitError> {
     if let Some(at) = poses.windows(2).position(|two| two[0].stamp_ns >= two[1].stamp_ns) {
         return Err(FitError::Backwards(at + 2));
     }
-    match options.form {
+    match options.form.unwrap_or(FormName::Plain) {
         FormName::Plain => spacing::fitted::<OneSided>(poses, options),
         FormName::Symmetric => spacing::fitted::<TimeSymmetric>(poses, options),
     }
@@ -200,10 +223,11 @@ fn fit_every<F: Form<f64>>(
     let interpolates = through.is_some();
     let undecided = FitError::Undecided(f64::from(step_ns) / 1e9);
     let held = bridge::bridged(poses, step_ns);
-    let solver = LeastSquares::new(&held, &knots, options.smoothing_s).ok_or(undecided)?;
+    let solver = LeastSquares::new(&held, &knots, options.smoothing_s);
     let control = if let Some(control) = through {
         control
     } else {
+        let solver = solver.as_ref().ok_or(undecided)?;
         // From the first pose: the digits of a place far from home would be lost where little decides.
         let home = poses[0].pose.translation();
         let ways: Vec<_> = held.iter().map(|pose| pose.pose.translation() - home).collect();
@@ -218,9 +242,11 @@ fn fit_every<F: Form<f64>>(
         control
     };
     let error = Distance::of::<F>(poses, &knots, &control)?;
-    let jitter = Jitter::of(poses).and_then(|jitter| jitter.on(&solver, &held, &knots));
+    let jitter = solver.and_then(|solver| Jitter::of(poses)?.on(&solver, poses, &held, &knots));
     let span_ns = spacing::ends_ns(poses);
-    Ok(Fit { form: options.form, knots, control, span_ns, error, interpolates, jitter })
+    let bridged = if interpolates { 0 } else { bridge::count(poses, step_ns) };
+    let form = options.form.unwrap_or(FormName::Plain);
+    Ok(Fit { form, knots, control, span_ns, error, interpolates, bridged, jitter })
 }
 
 /// The attitude of the poses at every control point: between two of them along the shortest turn.

@@ -93,6 +93,8 @@ struct Taken {
     renormalised: Tally,
     repeated: u64,
     contradicting: Tally,
+    /// By how much at most, rad.
+    contradicting_turn: f64,
     jumps: Tally,
 }
 
@@ -133,6 +135,7 @@ impl Taken {
         if pose.stamp_ns == before.stamp_ns {
             if apart > 0.0 || turn > 1e-9 {
                 self.contradicting.add(line, apart);
+                self.contradicting_turn = self.contradicting_turn.max(turn);
             } else {
                 self.repeated += 1;
             }
@@ -180,9 +183,10 @@ impl Taken {
         let Tally { count, first_line, most } = self.contradicting;
         if count > 0 {
             warn(format!(
-                "{count} {} with the stamp of the one above and another place, by up to {most:.3} m (the first in \
-                 line {first_line}): left out",
-                poses(count)
+                "{count} {} with the stamp of the one above and another place or attitude, by up to {most:.3} m and \
+                 {:.3}° (the first in line {first_line}): left out",
+                poses(count),
+                self.contradicting_turn.to_degrees()
             ));
         }
         let Tally { count, first_line, most } = self.jumps;

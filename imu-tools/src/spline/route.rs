@@ -74,6 +74,7 @@ impl Route {
         let route = fit.route().map_err(|error| none(&error))?;
         let mut notes = given.notes;
         notes.push(Note::Info(told(&fit, given.poses.len())));
+        notes.extend(fit.gaps());
         notes.extend(route.felt(GRAVITY).suspicion(route.span_ns.0).map(Note::Warning));
         Ok(Self { file: Some(path.to_owned()), notes, ..route })
     }

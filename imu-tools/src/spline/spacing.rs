@@ -18,7 +18,8 @@ pub enum Spacing {
     /// As near to this far, ns, as equal parts of the whole are: poses at the beginning of an interval would decide
     /// little of it.
     Every(u32),
-    /// As far as they can be, in equal parts of the whole, so that no pose is further from the curve than this.
+    /// As far as they can be, in equal parts of the whole, four candidates to an octave, so that no pose is further
+    /// from the curve than this.
     Within {
         /// m.
         position_m: f64,
@@ -78,6 +79,7 @@ pub(super) fn fitted<F: Form<f64>>(
                 FitError::Turn
                 | FitError::Undecided(_)
                 | FitError::Unsettled(_)
+                | FitError::Numbers(_)
                 | FitError::Spacing(_),
             ) => {}
             Err(other) => return Err(other),

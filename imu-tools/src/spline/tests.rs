@@ -31,7 +31,7 @@ fn jittered(poses: &[TimedPose], position_m: f64, rotation_rad: f64) -> Vec<Time
 }
 
 fn options(form: FormName, spacing: Spacing) -> Options {
-    Options { form, spacing, smoothing_s: 0.0 }
+    Options { form: Some(form), spacing, smoothing_s: 0.0 }
 }
 
 #[test]
@@ -132,8 +132,8 @@ fn smoothing_passes_what_it_says() {
             .collect();
         let smoothing_s = 1.0 / (core::f64::consts::TAU * hertz);
         let spacing = Spacing::Every(40_000_000);
-        let fit =
-            fit(&poses, &Options { form: FormName::Symmetric, spacing, smoothing_s }).unwrap();
+        let fit = fit(&poses, &Options { form: Some(FormName::Symmetric), spacing, smoothing_s })
+            .unwrap();
         let curve = SymmetricSplitSpline::from_control_points(
             fit.knots.start_ns(),
             40_000_000,
@@ -265,7 +265,7 @@ fn slow_smoothing_keeps_its_digits() {
     for hertz in [1.0, 0.3, 0.1, 0.05] {
         let smoothing_s = 1.0 / (core::f64::consts::TAU * hertz);
         let spacing = Spacing::Every(10_000_000);
-        let fit = fit(&poses, &Options { form: FormName::Plain, spacing, smoothing_s });
+        let fit = fit(&poses, &Options { form: Some(FormName::Plain), spacing, smoothing_s });
         match fit {
             // Roundings of 200 m.
             Ok(fit) => assert!(fit.error.largest_position_m < 1e-9, "{hertz}: {:?}", fit.error),
@@ -288,12 +288,8 @@ fn attitudes_go_the_short_way_across_long_holes() {
         for form in [FormName::Plain, FormName::Symmetric] {
             let fit = fit(&poses, &options(form, Spacing::AsPoses)).unwrap();
             assert!(fit.error.largest_rotation_rad < 1e-3, "{:?}", fit.error);
-            let curve = SymmetricSplitSpline::from_control_points(
-                fit.knots.start_ns(),
-                50_000_000,
-                &fit.control,
-            );
-            let curve = curve.unwrap();
+            assert_eq!(fit.bridged, 1);
+            let curve = fit.route().unwrap();
             let (begin, end) = (ends.0.stamp_ns, ends.1.stamp_ns);
             for t_ns in (begin..=end).step_by(10_000_000) {
                 let rate = curve.full(t_ns).unwrap().angular_rate;

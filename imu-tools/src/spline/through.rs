@@ -15,7 +15,7 @@ use super::TimedPose;
 
 /// Stamps may be so far from their knots, in steps: one part in this.
 const PART: i128 = 8;
-/// So near a curve goes through a pose, rad and parts of the largest place, m.
+/// So near a curve goes through a pose: rad, and parts of the largest distance from the first pose (or of 1 m).
 const THROUGH: f64 = 1e-12;
 /// Rounds, at most: 4⁻³⁰ is beyond the digits.
 const MOST_ROUNDS: usize = 30;
@@ -39,41 +39,63 @@ pub(super) fn control<F: Form<f64>>(
     poses: &[TimedPose],
     knots: &Knots<f64>,
 ) -> Result<Option<Vec<Pose<f64>>>, Error> {
+    // From the first pose: the digits of a place far from home would be lost between rounds.
+    let home = poses[0].pose.translation();
+    let from_home = |pose: &Pose<f64>| Pose::new(pose.rotation(), pose.translation() - home);
+    let poses = poses
+        .iter()
+        .map(|TimedPose { stamp_ns, pose }| {
+            Ok(TimedPose { stamp_ns: *stamp_ns, pose: from_home(pose)? })
+        })
+        .collect::<Result<Vec<_>, Error>>()?;
     let mut at_knots: Vec<_> = poses.iter().map(|pose| pose.pose).collect();
     let mut control = vec![Pose::identity(); knots.count()];
     let mut scratch = vec![Vector3::zeros(); poses.len()];
-    let rotation_error = interpolate::<_, F>(&at_knots, &mut control, &mut scratch)?.rotation_error;
+    let mut error = interpolate::<_, F>(&at_knots, &mut control, &mut scratch)?.rotation_error;
     let is_at = |(k, pose): (usize, &TimedPose)| {
         i128::from(pose.stamp_ns)
             == i128::from(knots.start_ns()) + (k as i128 + 1) * i128::from(knots.step_ns())
     };
-    if poses.iter().enumerate().all(is_at) {
-        return Ok((rotation_error <= THROUGH).then_some(control));
-    }
-    let scale = poses.iter().fold(1.0_f64, |m, pose| m.max(pose.pose.translation().abs().max()));
-    let mut before = f64::INFINITY;
-    for _ in 0..MOST_ROUNDS {
-        let curve = SplitCurve::<_, _, F>::from_control_points(
-            knots.start_ns(),
-            knots.step_ns(),
-            &control,
-        )?;
-        let mut largest = 0.0_f64;
-        for (at_knot, TimedPose { stamp_ns, pose }) in at_knots.iter_mut().zip(poses) {
-            let there = curve.pose(*stamp_ns)?;
-            let moved = pose.translation() - there.translation();
-            let turned =
-                so3::log(&so3::product(&so3::inverse(&there.rotation()), &pose.rotation()));
-            largest = largest.max(moved.abs().max()).max(turned.abs().max());
-            let rotation = so3::product(&at_knot.rotation(), &so3::exp(turned));
-            *at_knot = Pose::new(rotation, at_knot.translation() + moved)?;
+    if !poses.iter().enumerate().all(is_at) {
+        let scale =
+            poses.iter().fold(1.0_f64, |m, pose| m.max(pose.pose.translation().abs().max()));
+        let mut before = f64::INFINITY;
+        for _ in 0..MOST_ROUNDS {
+            error = lacking::<F>(&poses, knots, &control, &mut at_knots, scale)?;
+            // Down to rounding, which does not fall any more.
+            if error >= 0.5 * before {
+                break;
+            }
+            before = error;
+            interpolate::<_, F>(&at_knots, &mut control, &mut scratch)?;
         }
-        // Down to rounding, which does not fall any more.
-        if largest >= 0.5 * before {
-            break;
-        }
-        before = largest;
-        interpolate::<_, F>(&at_knots, &mut control, &mut scratch)?;
     }
-    Ok((before <= THROUGH * scale).then_some(control))
+    if error > THROUGH {
+        return Ok(None);
+    }
+    let back = |pose: &Pose<f64>| Pose::new(pose.rotation(), pose.translation() + home);
+    control.iter().map(back).collect::<Result<_, _>>().map(Some)
+}
+
+/// Adds what the curve lacks of every pose to what is interpolated at its knot; the largest of it, rad, or parts of
+/// `scale`, m.
+fn lacking<F: Form<f64>>(
+    poses: &[TimedPose],
+    knots: &Knots<f64>,
+    control: &[Pose<f64>],
+    at_knots: &mut [Pose<f64>],
+    scale: f64,
+) -> Result<f64, Error> {
+    let curve =
+        SplitCurve::<_, _, F>::from_control_points(knots.start_ns(), knots.step_ns(), control)?;
+    let mut largest = 0.0_f64;
+    for (at_knot, TimedPose { stamp_ns, pose }) in at_knots.iter_mut().zip(poses) {
+        let there = curve.pose(*stamp_ns)?;
+        let moved = pose.translation() - there.translation();
+        let turned = so3::log(&so3::product(&so3::inverse(&there.rotation()), &pose.rotation()));
+        largest = largest.max(moved.abs().max() / scale).max(turned.abs().max());
+        let rotation = so3::product(&at_knot.rotation(), &so3::exp(turned));
+        *at_knot = Pose::new(rotation, at_knot.translation() + moved)?;
+    }
+    Ok(largest)
 }

@@ -68,6 +68,11 @@ fn a_fit_says_how_far_it_is_and_what_else_there_is() {
         assert!(said.out.contains(words), "{words}: {}", said.out);
     }
     assert_eq!(said.err, "");
+    flight.refused(
+        "spline sample @a.spline --rate 10 --form plain -o @a.csv",
+        2,
+        "is a curve already",
+    );
     for name in ["curve.svg", "curve.png", "residual.svg", "residual.png"] {
         assert!(Path::new(&flight.at("plots")).join(name).is_file(), "{name}");
     }
@@ -244,8 +249,11 @@ fn poses_become_imu_data_and_poses_again() {
     let flight = Flight::new(60);
     let poses = flight.at("poses.tum");
     for form in [FormName::Plain, FormName::Symmetric] {
-        let options =
-            Options { form, spacing: asked::every(0.05).expect("a spacing"), smoothing_s: 0.0 };
+        let options = Options {
+            form: Some(form),
+            spacing: asked::every(0.05).expect("a spacing"),
+            smoothing_s: 0.0,
+        };
         let route = Arc::new(Route::open(Path::new(&poses), &options).expect("a curve"));
         let [slow, fast, faster] = [200.0, 1000.0, 2000.0]
             .map(|hz| closure(&route, hz, SampleKind::Instantaneous).worst_window_m);

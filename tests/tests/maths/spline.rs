@@ -410,7 +410,7 @@ fn what_makes_no_curve_is_refused_by_name() {
     let poses = ellipse(10_000_000, 8);
     let (mut knots, mut screws) = ([Knot::<f32>::default(); 8], [ScrewKnot::<f32>::default(); 8]);
     let points = Error::OutOfRange("points");
-    for filled in [5, 7, 8] {
+    for filled in [0, 5, 7, 8] {
         cache(&poses[..filled], &mut knots[..filled]).unwrap();
         cache_screws(&poses[..filled], &mut screws[..filled]).unwrap();
         let whole = filled == 8;
