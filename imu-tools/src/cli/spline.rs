@@ -53,9 +53,9 @@ struct How {
     /// Which curve of attitudes: plain or symmetric [default: plain]
     #[arg(long, value_name = "FORM")]
     form: Option<FormName>,
-    /// Seconds between knots: the nearest equal part of the whole is taken [default: as the poses]
-    #[arg(long, value_name = "SECONDS", conflicts_with = "within", allow_negative_numbers = true)]
-    spacing: Option<f64>,
+    /// Time between knots, such as 0.1s or 50ms: the nearest equal part of the whole is taken [default: as the poses]
+    #[arg(long, value_name = "TIME", conflicts_with = "within", allow_negative_numbers = true)]
+    spacing: Option<String>,
     /// Knots as far apart as they can be with no pose further than this from the curve, such as 5mm,0.1deg
     #[arg(long, value_name = "DISTANCE", allow_hyphen_values = true)]
     within: Option<String>,
@@ -66,8 +66,8 @@ struct How {
 
 impl How {
     fn options(&self) -> Result<Options, Error> {
-        let spacing = match (self.spacing, &self.within) {
-            (Some(seconds), _) => asked::every(seconds)?,
+        let spacing = match (&self.spacing, &self.within) {
+            (Some(time), _) => asked::spacing(time)?,
             (None, Some(text)) => asked::within(text)?,
             (None, None) => Spacing::AsPoses,
         };

@@ -125,9 +125,9 @@ fn what_cannot_be_followed_is_refused_with_line_and_key() {
         ),
         ("[trajectory]\nform = 'plain'", "`file` is missing"),
         ("trajectory = {file = 'poses.tum', spacing_s = 0.1, within = '1mm'}", "not both"),
-        ("trajectory = {file = 'poses.tum', spacing_s = 20}", "knots 20 s apart cannot be"),
+        ("trajectory = {file = 'poses.tum', spacing_s = 20}", "knots 20.0 s apart cannot be"),
         ("trajectory = {file = 'poses.tum', within = '5'}", "'5' is no distance"),
-        ("trajectory = {file = 'poses.tum', smooth_hz = 0}", "smoothing at 0 Hz cannot be"),
+        ("trajectory = {file = 'poses.tum', smooth_hz = 0}", "smoothing at 0.0 Hz cannot be"),
         ("trajectory = 5", "a file of poses, or a table"),
     ] {
         let error = scene(&folder, text).unwrap_err();

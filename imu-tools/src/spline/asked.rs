@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use super::{FormName, Options, Spacing};
 use crate::error::Error;
+use crate::scene::parse_duration;
 
 impl FromStr for FormName {
     type Err = String;
@@ -74,6 +75,17 @@ pub fn within(text: &str) -> Result<Spacing, Error> {
     })
 }
 
+/// Knots as far apart as `0.1`, `0.1s` or `50ms`.
+///
+/// # Errors
+/// A sentence for what is no time between knots.
+pub fn spacing(text: &str) -> Result<Spacing, Error> {
+    match text.trim().parse() {
+        Ok(seconds) => every(seconds),
+        Err(_) => every(parse_duration(text)? as f64 / 1e9),
+    }
+}
+
 /// Knots so many seconds apart.
 ///
 /// # Errors
@@ -84,7 +96,7 @@ pub fn every(seconds: f64) -> Result<Spacing, Error> {
         Ok(Spacing::Every(step as u32))
     } else {
         Err(Error::usage(format!(
-            "knots {seconds} s apart cannot be: give seconds up to 4.29, such as 0.1"
+            "knots {seconds:?} s apart cannot be: give a time up to 4.29 s, such as 0.1s"
         )))
     }
 }
@@ -98,7 +110,7 @@ pub fn smoothing_s(hertz: f64) -> Result<f64, Error> {
         Ok(1.0 / (2.0 * PI * hertz))
     } else {
         Err(Error::usage(format!(
-            "smoothing at {hertz} Hz cannot be: give the frequency of which half is to be left, such as 5"
+            "smoothing at {hertz:?} Hz cannot be: give the frequency of which half is to be left, such as 5"
         )))
     }
 }
@@ -130,7 +142,12 @@ mod tests {
     #[test]
     fn times_and_frequencies_that_cannot_be() {
         assert_eq!(every(0.05).unwrap(), Spacing::Every(50_000_000));
+        for text in ["0.05", "5e-2", "0.05s", "50 ms"] {
+            assert_eq!(spacing(text).unwrap(), Spacing::Every(50_000_000), "{text}");
+        }
         assert!([0.0, -1.0, f64::NAN, 5.0, 1e-12].iter().all(|s| every(*s).is_err()));
+        assert!(["", "-50ms", "5s", "1e300", "0.1 Hz"].iter().all(|text| spacing(text).is_err()));
+        assert!(every(1e300).unwrap_err().to_string().contains("1e300 s"));
         assert!([0.0, -1.0, f64::NAN, f64::INFINITY].iter().all(|hz| smoothing_s(*hz).is_err()));
     }
 }

@@ -19,11 +19,12 @@
 use std::io::{BufRead, BufReader, Read as _};
 use std::path::Path;
 
+use imu_core::Error as CoreError;
 use imu_core::nalgebra::{Quaternion, Vector3};
 use imu_core::se3::Pose;
 use imu_core::spline::Knots;
 
-use super::{Fit, FormName, Given, Route};
+use super::{FEWEST_POSES, Fit, FormName, Given, Route};
 use crate::error::Error;
 use crate::output::Output;
 use crate::recording::{self, poses::Poses};
@@ -137,11 +138,19 @@ pub fn read(name: &str, lines: impl BufRead) -> Result<Route, Error> {
             control.len()
         )));
     }
-    let of_curve = |_| {
-        Error::data(format!(
-            "{name}: its control points make no curve: fewer than four, times that do not fit, or neighbours half a \
-             turn apart"
-        ))
+    let of_curve = |error: CoreError| {
+        let why = match error {
+            CoreError::OutOfRange("count") if count < FEWEST_POSES => {
+                format!("there are {count}, and a curve needs {FEWEST_POSES} or more")
+            }
+            CoreError::OutOfRange("count") => "they end behind the last instant there is".into(),
+            CoreError::OutOfRange("step_ns") => "step_ns is 0".into(),
+            CoreError::OutOfRange("span_ns") => {
+                format!("end_ns, {end_ns}, is not within their time")
+            }
+            _ => "two neighbours are half a turn apart".into(),
+        };
+        Error::data(format!("{name}: its control points make no curve: {why}"))
     };
     let knots = Knots::new(start_ns, step_ns, control.len()).map_err(of_curve)?;
     let span_ns = (knots.span().0, end_ns);

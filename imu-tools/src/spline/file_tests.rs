@@ -60,7 +60,18 @@ fn what_is_no_curve_is_refused_with_its_line() {
         (changed(3, "# step_ns: 5e7"), "line 4: step_ns is a whole number"),
         (changed(4, "# control_points: many"), "line 5: control_points is a whole number"),
         (changed(5, "# end_ns: 5 s"), "line 6: end_ns is a whole number"),
-        (changed(5, "# end_ns: 9"), "times that do not fit"),
+        (changed(5, "# end_ns: 9"), "no curve: end_ns, 9, is not within their time"),
+        (changed(3, "# step_ns: 0"), "no curve: step_ns is 0"),
+        (
+            changed(2, "# start_ns: 9223372036854775800"),
+            "no curve: they end behind the last instant",
+        ),
+        (changed(9, "1,2,3,0,0,0,1"), "no curve: two neighbours are half a turn apart"),
+        (
+            changed(4, "# control_points: 3").lines().take(10).collect::<Vec<_>>().join("\n")
+                + "\n",
+            "no curve: there are 3, and a curve needs 4 or more",
+        ),
         (changed(6, "x,y,z"), "line 7: the columns are c_x [m]"),
         (changed(9, "1,2,3,1,0,0"), "line 10: this is no control point"),
         (changed(9, "1,2,nan,1,0,0,0"), "line 10: this is no control point"),

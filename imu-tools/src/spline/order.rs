@@ -3,7 +3,8 @@
 //! Whatever a sensor's mounting, gravity stays near one direction of its own axes while it turns about the vertical;
 //! read in another order, the same quaternions let it wander about. The mean direction of the vertical in body axes,
 //! whose length is 1 where it does not move at all, tells one reading from the other. (Angles between neighbours do
-//! not: they are the same in both orders.)
+//! not: they are the same in both orders.) Which of two wrong orders it was, scalar first for last or last for first,
+//! does not show: the two readings differ by the vertical's sign in body z, and neither sign is wrong.
 
 use imu_core::nalgebra::{Quaternion, Vector3};
 use imu_core::so3;
@@ -35,15 +36,16 @@ fn length(v: Vector3<f64>) -> f64 {
 
 /// What to tell of poses that look better in another order.
 pub(super) fn suspicion(poses: &[TimedPose]) -> Option<String> {
-    // What was read as x, y, z, w was w, x, y, z; and the other way round.
-    let first =
+    // What was read as x, y, z, w was w, x, y, z.
+    let other_end =
         |q: Quaternion<f64>| Quaternion::new(q.coords.x, q.coords.y, q.coords.z, q.coords.w);
-    let last = |q: Quaternion<f64>| Quaternion::new(q.coords.z, q.coords.w, q.coords.x, q.coords.y);
     let here = vertical(poses, |q| q);
     let steady = length(here);
     let (other, what) = [
-        (vertical(poses, last), "the scalar of its quaternions came last (qx qy qz qw)"),
-        (vertical(poses, first), "the scalar of its quaternions came first (qw qx qy qz)"),
+        (
+            vertical(poses, other_end),
+            "the scalar of its quaternions stood at their other end (qw qx qy qz for qx qy qz qw, or the reverse)",
+        ),
         (vertical(poses, |q| so3::inverse(&q)), "it held the world's poses as the body sees them"),
     ]
     .into_iter()

@@ -54,7 +54,9 @@ impl Given {
         while let Some(pose) = poses.next_pose()? {
             taken.take(&pose, poses.line().unwrap_or(0))?;
         }
-        taken.given()
+        let mut given = taken.given()?;
+        given.notes.extend(poses.finish()?);
+        Ok(given)
     }
 
     /// From the first pose to the last, s.
@@ -115,7 +117,9 @@ impl Taken {
             )));
         }
         let pose = Pose::new(rotation, Vector3::new(x, y, z)).map_err(|_| {
-            at(format!("a position of {x}, {y}, {z} m is beyond any on Earth; metres are wanted"))
+            at(format!(
+                "a position of {x:?}, {y:?}, {z:?} m is beyond any on Earth; metres are wanted"
+            ))
         })?;
         let pose = TimedPose { stamp_ns: given.stamp_ns, pose };
         if off > ROUNDED {

@@ -95,8 +95,25 @@ fn columns_in_another_order_are_recognised() {
         *row = [t, x, y, z, qw, qx, qy, qz];
     }
     let told = warnings(&first);
-    assert!(told[0].contains("if the scalar of its quaternions came first"), "{told:?}");
-    assert!(told[0].contains("it would be 1.00 g"), "{told:?}");
+    let other_end = "if the scalar of its quaternions stood at their other end";
+    assert!(told[0].contains(other_end) && told[0].contains("it would be 1.00 g"), "{told:?}");
+    let mut last = rows(100);
+    for row in &mut last {
+        let [t, x, y, z, qx, qy, qz, qw] = *row;
+        *row = [t, x, y, z, qy, qz, qw, qx];
+    }
+    let told = warnings(&last);
+    assert!(told[0].contains(other_end), "{told:?}");
+    // Leaning by half a radian, for what turns about the vertical alone is the same backwards.
+    let mut inverse = rows(100);
+    let leaning = Quaternion::new(0.25_f64.cos(), 0.25_f64.sin(), 0.0, 0.0);
+    for row in &mut inverse {
+        let [t, x, y, z, qx, qy, qz, qw] = *row;
+        let q = so3::product(&Quaternion::new(qw, qx, qy, qz), &leaning);
+        *row = [t, x, y, z, -q.i, -q.j, -q.k, q.w];
+    }
+    let told = warnings(&inverse);
+    assert!(told[0].contains("if it held the world's poses as the body sees them"), "{told:?}");
     let mut swapped = rows(100);
     for row in &mut swapped {
         let [t, x, y, z, qx, qy, qz, qw] = *row;

@@ -63,7 +63,11 @@ pub fn write(route: &Route, rate: Rate, path: &Path, table: Table) -> Result<u64
     let mut count = 0;
     for offset_ns in rate.offsets() {
         let t_ns = begin.saturating_add(offset_ns);
-        let Some(full) = (t_ns <= end).then(|| route.full(t_ns).ok()).flatten() else { break };
+        if t_ns > end {
+            break;
+        }
+        let full =
+            route.full(t_ns).map_err(|error| Error::data(format!("at {t_ns} ns: {error}")))?;
         match table {
             Table::Tum => {
                 let (p, q) = (full.pose.translation(), full.pose.rotation());

@@ -87,13 +87,14 @@ fn knots_are_as_far_apart_as_the_error_allows() {
 #[test]
 fn jitter_is_found_and_what_it_makes() {
     let (position_m, rotation_rad) = (1e-3, 2e-3);
-    let clean = every(20_000_000, 3000);
+    let clean = every(20_000_000, 12_000);
     let noisy = jittered(&clean, position_m, rotation_rad);
     let fit = fit(&noisy, &options(FormName::Symmetric, Spacing::Every(40_000_000))).unwrap();
     let jitter = fit.jitter.unwrap();
-    // 9000 sizes, seven of which share a pose: the median scatters by 2 %.
-    assert!((jitter.poses.position_m / position_m - 1.0).abs() < 0.1, "{jitter:?}");
-    assert!((jitter.poses.rotation_rad / rotation_rad - 1.0).abs() < 0.1, "{jitter:?}");
+    // 36 000 sizes, seven of which share a pose: the median scatters by 1 %.
+    let (found_m, found_rad) =
+        (jitter.poses.position_m / position_m, jitter.poses.rotation_rad / rotation_rad);
+    assert!((found_m - 1.0).abs() < 0.06 && (found_rad - 1.0).abs() < 0.06, "{jitter:?}");
     let curve = SymmetricSplitSpline::from_control_points(
         fit.knots.start_ns(),
         fit.knots.step_ns(),
@@ -101,7 +102,7 @@ fn jitter_is_found_and_what_it_makes() {
     );
     let curve = curve.unwrap();
     let (mut acceleration, mut rate, mut count) = (0.0, 0.0, 0.0);
-    for k in 100..5900_i64 {
+    for k in 100..23_900_i64 {
         let t_ns = k * 10_000_000;
         let full = curve.full(t_ns).unwrap();
         let truth: Motion<f64> = Ellipse::default().at(t_ns);
@@ -112,10 +113,12 @@ fn jitter_is_found_and_what_it_makes() {
         rate += turn.iter().map(|x| x * x).sum::<f64>() / 3.0;
         count += 1.0;
     }
-    // 1500 intervals of three axes, neighbours alike: 2 % each, and 10 % of the jitter's own.
+    // 6000 intervals of three axes, every two alike: a root mean square scatters by 1/√(2·9000) = 0.75 %. How much
+    // jitter was found is no matter here.
     let (acceleration, rate) = (f64::sqrt(acceleration / count), f64::sqrt(rate / count));
-    assert!((jitter.acceleration / acceleration - 1.0).abs() < 0.15, "{jitter:?} {acceleration}");
-    assert!((jitter.angular_rate / rate - 1.0).abs() < 0.15, "{jitter:?} {rate}");
+    let near = |said: f64, seen: f64, found: f64| (said / (seen * found) - 1.0).abs() < 0.045;
+    assert!(near(jitter.acceleration, acceleration, found_m), "{jitter:?} {acceleration}");
+    assert!(near(jitter.angular_rate, rate, found_rad), "{jitter:?} {rate}");
 }
 
 #[test]

@@ -114,13 +114,14 @@ impl Poses {
         }
     }
 
-    /// Reads what is left of a recording, and takes what there is to tell of it; a table has nothing to tell.
+    /// Reads what is left of a recording, and takes what there is to tell of it; of a table, whether its last row is cut
+    /// off.
     ///
     /// # Errors
     /// When the file cannot be read.
     pub fn finish(&mut self) -> Result<Vec<Note>, Error> {
         match &mut self.0 {
-            Origin::Table(_) => Ok(Vec::new()),
+            Origin::Table(table) => Ok(Vec::from_iter(table.note())),
             Origin::Topic(topic) => topic.finish(),
         }
     }

@@ -8,6 +8,7 @@
 
 use super::Pose;
 use crate::error::Error;
+use crate::recording::Note;
 use crate::recording::csv::dialect::Dialect;
 use crate::recording::csv::number;
 use crate::recording::input::{Input, LARGEST_PIECE};
@@ -22,6 +23,7 @@ pub struct Table {
     input: Input,
     format: Format,
     line: u64,
+    is_cut: bool,
 }
 
 /// Where its numbers stand.
@@ -183,12 +185,17 @@ impl Table {
                 Format::why_not(input.at_hand())
             ))
         })?;
-        Ok(Self { input, format, line: 0 })
+        Ok(Self { input, format, line: 0, is_cut: false })
     }
 
     /// The line of the last pose, from 1.
     pub fn line(&self) -> u64 {
         self.line
+    }
+
+    /// What there is to tell at its end.
+    pub fn note(&self) -> Option<Note> {
+        self.is_cut.then(|| Note::Warning(format!("line {} is cut off and left out", self.line)))
     }
 
     /// The next pose; `None` at the end, which a row that is cut off is as well.
@@ -226,6 +233,7 @@ impl Table {
                 Some(pose) if !aside => return Ok(Some(pose)),
                 None if !aside && !header && !lost => {
                     if !whole {
+                        self.is_cut = true;
                         return Ok(None);
                     }
                     return Err(Error::data(format!(
@@ -327,6 +335,12 @@ mod tests {
     fn faults_and_cuts() {
         let row = "1 0 0 0 0 0 0 1\n";
         assert_eq!(poses(&format!("{row}{row}2 0 0")).unwrap().len(), 2);
+        for (text, told) in [("2 0 0", Some("line 2 is cut off and left out")), (row, None)] {
+            let stream = Box::new(std::io::Cursor::new(format!("{row}{text}").into_bytes()));
+            let mut table = Table::of(Input::pipe(Path::new("a"), stream)).unwrap();
+            while table.next_pose().unwrap().is_some() {}
+            assert_eq!(table.note(), told.map(|text| Note::Warning(text.into())));
+        }
         let error = poses(&format!("{row}oops\n{row}")).unwrap_err();
         assert!(error.to_string().contains("line 2"), "{error}");
     }
