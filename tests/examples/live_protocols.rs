@@ -99,16 +99,19 @@ fn numbers(calibration: &Calibration) -> Vec<[Parameter; 2]> {
     axes.map(|axis| [axis.noise_density, axis.random_walk]).collect()
 }
 
-/// The largest relative differences of N and of K.
+/// The largest relative differences of N and of K, of those that can be seen at all; not a number where only
+/// one of the two sees it.
 fn furthest(live: &Calibration, offline: &Calibration) -> [f64; 2] {
-    let value = |parameter| match parameter {
-        Parameter::Observable { value, .. } => value,
-        _ => f64::NAN,
+    let off = |pair: (Parameter, Parameter)| match pair {
+        (Parameter::Observable { value: a, .. }, Parameter::Observable { value: b, .. }) => {
+            (a / b - 1.0).abs()
+        }
+        (Parameter::Observable { .. }, _) | (_, Parameter::Observable { .. }) => f64::NAN,
+        _ => 0.0,
     };
     let (live, offline) = (numbers(live), numbers(offline));
     [0, 1].map(|which| {
-        let off = live.iter().zip(&offline);
-        let off = off.map(|(a, b)| (value(a[which]) / value(b[which]) - 1.0).abs());
+        let off = live.iter().zip(&offline).map(|(a, b)| off((a[which], b[which])));
         off.fold(0.0, |most: f64, off| if off > most || off.is_nan() { off } else { most })
     })
 }

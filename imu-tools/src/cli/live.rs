@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::live::checkpoint;
 use crate::live::goal::Goal;
 use crate::live::intake::{self, Intake};
-use crate::live::port::{self, Address, How};
+use crate::live::port::{self, Address, Expected, How};
 use crate::live::protocol::Protocol;
 use crate::live::run::{self, Decode, Ended, Face, Keep};
 use crate::live::screen::Screen;
@@ -138,14 +138,17 @@ impl Live {
         output::heed_signals();
         let session = self.session(&address, &options, checkpoint.as_deref())?;
         let how = How { baud: self.baud, reading: self.reading.options(), speed: self.speed };
+        let protocol = intake::named(self.protocol, &how.reading);
         let decode: Option<Box<dyn Decode>> = if address.comes_again() {
             None
         } else {
-            let reading = self.reading.options();
-            Some(Box::new(Intake::new(&address.name(), self.protocol, &reading)?))
+            Some(Box::new(Intake::new(&address.name(), protocol, &how.reading)?))
         };
-        // Of a sensor whose protocol is known the silence of a wrong rate is told by its decoder.
-        let port = port::open(&address, &how, &intake::refused)?;
+        let expected = Expected {
+            protocol: protocol.map(Protocol::name),
+            refused: &|bytes| intake::refused(protocol, &how.reading, bytes),
+        };
+        let port = port::open(&address, &how, &expected)?;
         let keep = Keep {
             checkpoint: checkpoint
                 .map(|path| (path, Duration::from_secs_f64(self.checkpoint_every))),

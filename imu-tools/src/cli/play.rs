@@ -34,14 +34,6 @@ impl Targets<'_> {
         read: impl IntoIterator<Item = (&'r Path, &'r str)>,
     ) -> Result<(), Error> {
         let read: Vec<_> = read.into_iter().collect();
-        if let Some(truth) =
-            self.truth.filter(|truth| truth.extension().is_some_and(|e| e == "tum"))
-        {
-            return Err(Error::usage(format!(
-                "truth is written as CSV, and {} would be TUM's: name it .csv",
-                truth.display()
-            )));
-        }
         let targets =
             [(Some(self.output), "recording"), (self.truth, "truth"), (self.terms, "terms")];
         let targets: Vec<(&Path, &str)> =
@@ -61,6 +53,14 @@ impl Targets<'_> {
                     path.display()
                 )));
             }
+        }
+        if let Some(truth) =
+            self.truth.filter(|truth| truth.extension().is_some_and(|e| e == "tum"))
+        {
+            return Err(Error::usage(format!(
+                "truth is written as CSV, and {} would be TUM's: name it .csv",
+                truth.display()
+            )));
         }
         Ok(())
     }

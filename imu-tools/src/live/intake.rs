@@ -6,7 +6,7 @@
 
 use super::clock::Clock;
 use super::link::{Link, LinkClock};
-use super::protocol::{Decoder, Protocol, candidates, recognise};
+use super::protocol::{Decoder, Protocol, candidate, candidates, recognise};
 use super::rates::rates;
 use super::run::{Decode, Step};
 use super::{Kind, Message, shown};
@@ -40,18 +40,28 @@ enum State {
     Known(Decoder),
 }
 
-/// The part of some bytes that no protocol explains; `None` where they are too few to say.
+/// The protocol that is named by a user who tells what columns hold: those are of text.
 #[must_use]
-pub fn refused(bytes: &[u8]) -> Option<f64> {
+pub fn named(protocol: Option<Protocol>, options: &ReadOptions) -> Option<Protocol> {
+    let columns = options.columns.is_some() || options.map.is_some();
+    protocol.or(columns.then_some(Protocol::Text))
+}
+
+/// The part of some bytes that `protocol` (or where none is named, any) does not explain; `None` where they
+/// are too few to say.
+#[must_use]
+pub fn refused(protocol: Option<Protocol>, options: &ReadOptions, bytes: &[u8]) -> Option<f64> {
     /// Fewer say nothing.
     const FEWEST: usize = 64;
     if bytes.len() < FEWEST {
         return None;
     }
-    Some(match recognise(bytes) {
-        Some(_) => 0.0,
-        None => 1.0 - candidates(bytes).first().map_or(0.0, |best| best.accepted),
-    })
+    let best = match protocol {
+        Some(protocol) => candidate(protocol, options, bytes),
+        None if recognise(bytes).is_some() => return Some(0.0),
+        None => candidates(bytes).first().copied(),
+    };
+    Some(1.0 - best.map_or(0.0, |best| best.accepted))
 }
 
 impl Intake {
@@ -65,7 +75,7 @@ impl Intake {
         protocol: Option<Protocol>,
         options: &ReadOptions,
     ) -> Result<Self, Error> {
-        let state = match protocol {
+        let state = match named(protocol, options) {
             Some(protocol) => State::Known(Decoder::new(protocol, options)?),
             None => State::Unknown { first: Vec::new(), pieces: Vec::new(), tried: 0 },
         };
@@ -80,10 +90,7 @@ impl Intake {
             return Ok(());
         }
         *tried = first.len();
-        // Columns are for text.
-        let told = self.options.columns.is_some() || self.options.map.is_some();
-        let protocol = if told { Some(Protocol::Text) } else { recognise(first) };
-        let Some(protocol) = protocol else {
+        let Some(protocol) = recognise(first) else {
             if first.len() < ENOUGH && !at_end {
                 return Ok(());
             }
@@ -402,6 +409,11 @@ mod tests {
         let mut intake = Intake::new("tty", protocol, &ReadOptions::default()).unwrap();
         let error = intake.feed(0, &noise, &mut Vec::new()).unwrap_err().to_string();
         assert!(error.contains("% of the bytes of tty are no witmotion: the baud rate"), "{error}");
-        assert!(refused(&noise).unwrap() > 0.5 && refused(&bytes(0..100)) == Some(0.0));
+        let refused = |protocol, bytes| refused(protocol, &ReadOptions::default(), bytes).unwrap();
+        assert!(refused(None, &noise) > 0.5 && refused(protocol, &noise) > 0.5);
+        let frames = bytes(0..100);
+        assert_eq!(refused(None, &frames), 0.0);
+        assert_eq!(refused(Some(Protocol::ImuFrame), &frames), 0.0);
+        assert!(refused(protocol, &frames) > 0.5);
     }
 }

@@ -2,7 +2,7 @@
 //! now and then it is shown.
 
 use std::path::PathBuf;
-use std::sync::mpsc::RecvTimeoutError;
+use std::sync::mpsc::TryRecvError;
 use std::time::{Duration, Instant};
 
 use super::checkpoint;
@@ -14,8 +14,9 @@ use crate::error::Error;
 use crate::output::{Output, end_is_asked};
 use crate::recording::{Block, SampleKind, Sink};
 
-/// Keys and signals are looked at so often.
-const GLANCE: Duration = Duration::from_millis(50);
+/// Nothing left to take, the loop sleeps so long: to wake for every piece would cost as much as all else,
+/// and when bytes came is noted by who reads them. Keys and signals are looked at as often, at least.
+const LULL: Duration = Duration::from_millis(20);
 
 /// Recordings are brought to the disk so often.
 const FLUSH: Duration = Duration::from_secs(1);
@@ -179,14 +180,14 @@ impl Live<'_> {
         let (mut shown, mut flushed, mut kept) = (Instant::now(), Instant::now(), Instant::now());
         let (mut between, mut look_at_s) = (face.every(), 0.0);
         loop {
-            match self.port.arrivals.recv_timeout(GLANCE) {
+            match self.port.arrivals.try_recv() {
                 Ok(arrival) => {
                     if !self.arrive(arrival, face, link)? {
                         return Ok(Ended::Input);
                     }
                 }
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => {
+                Err(TryRecvError::Empty) => std::thread::sleep(LULL),
+                Err(TryRecvError::Disconnected) => {
                     return Err(Error::data(format!("{} is not read any more", link.name)));
                 }
             }

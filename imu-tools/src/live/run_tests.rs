@@ -11,7 +11,7 @@ use serial2::SerialPort;
 
 use super::*;
 use crate::calibrate::Options;
-use crate::live::port::{self, Address, How};
+use crate::live::port::{self, Address, Expected, How};
 use crate::recording::Sample;
 
 /// Lines `STAMP VALUE`, a sample each; anything else is refused.
@@ -94,7 +94,7 @@ fn follow(address: &Address, enough: u64, keep: Keep) -> (View, Vec<String>) {
     let how = How { baud: Some(115_200), ..How::default() };
     let live = Live {
         session: Session::new("it", &Options::default()),
-        port: port::open(address, &how, &|_| None).unwrap(),
+        port: port::open(address, &how, &Expected { protocol: None, refused: &|_| None }).unwrap(),
         decode: Some(Box::new(Text::default())),
         keep,
         goal: Goal::default(),

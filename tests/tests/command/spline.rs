@@ -221,7 +221,7 @@ fn what_cannot_be_is_refused_in_one_sentence() {
         ("spline fit @poses.tum -o @x --plots -", 2, "plots go into a folder"),
         ("spline fit @poses.tum -o @x --form odd", 2, "plain or symmetric"),
         ("spline fit @poses.tum -o @x --spacing 0", 2, "knots 0.0 s apart cannot be"),
-        ("spline fit @poses.tum -o @x --spacing 4.2 --smooth -1", 2, "smoothing at -1 Hz"),
+        ("spline fit @poses.tum -o @x --spacing 4.2 --smooth -1", 2, "smoothing at -1.0 Hz"),
         ("spline fit @poses.tum -o @x --within 5", 2, "'5' is no distance"),
         ("spline fit @poses.tum -o @x --within 1um", 2, "'1um' is no distance"),
         ("spline fit @poses.tum -o @x --within 1e-20m", 1, "no curve stays within what was asked"),
@@ -235,6 +235,7 @@ fn what_cannot_be_is_refused_in_one_sentence() {
             2,
             "the trajectory itself",
         ),
+        ("spline imu @poses.tum --rate 100 -o @x.csv --truth @t.tum", 2, "truth is written as CSV"),
     ] {
         flight.refused(arguments, code, words);
         assert!(!Path::new(&flight.at("x")).exists() && !Path::new(&flight.at("x.csv")).exists());

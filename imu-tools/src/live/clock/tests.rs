@@ -61,6 +61,21 @@ fn ticks_wrap_where_they_say_and_losses_are_seen() {
 }
 
 #[test]
+fn messages_without_ticks_are_counted_once() {
+    for wraps_at in [None, Some(1 << 24)] {
+        let (clock, all) = taken((0..1000_i64).map(|k| {
+            let message = with_ticks(k as u64 * 10_000, wraps_at);
+            let silent = (500..503).contains(&k) || k == 700;
+            (read(k * 10 * MS), if silent { Message::default() } else { message })
+        }));
+        assert_eq!((clock.status().source, clock.status().restarts), (Source::Ticks, 0));
+        assert_eq!(lost(&all), []);
+        let whole = all[999].stamp_ns - all[0].stamp_ns;
+        assert!((whole - 9990 * MS).abs() < 10 * MS, "{whole}");
+    }
+}
+
+#[test]
 fn a_reboot_is_a_restart_whatever_the_counter() {
     for wraps_at in [None, Some(1 << 32)] {
         let before = (0..1000_i64).map(|k| (read(k * 10 * MS), k + 100_000));

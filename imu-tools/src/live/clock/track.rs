@@ -90,6 +90,8 @@ pub(super) struct Track {
     unit_ns: f64,
     tick_ns: Option<f64>,
     reading: Option<Reading>,
+    /// Units of the messages since, which had no reading.
+    unread: u64,
     /// A message may seem to be sent so long after it was read, ns: as far as the line is known to be too late.
     ahead_ns: f64,
     /// Units passed, up to the last message.
@@ -128,6 +130,7 @@ impl Track {
             unit_ns: start.unit_ns,
             tick_ns: start.tick_ns,
             reading: start.reading,
+            unread: 0,
             ahead_ns: UNKNOWN_NS,
             units: 0,
             last_arrival_ns: start.origin_ns,
@@ -229,7 +232,7 @@ impl Track {
         let mut units = self.stride;
         let now = Reading::of(self.source, message);
         if let (Some(now), Some(before)) = (now, self.reading) {
-            units = now.since(before)?;
+            units = now.since(before)?.saturating_sub(self.unread);
             if let Some(wrap) = now.wraps_at
                 && silence >= SILENCE_NS
                 && units != self.stride
@@ -249,6 +252,7 @@ impl Track {
         if std::mem::take(&mut self.reopened) && late > SET_NS + 1e-4 * silence as f64 {
             return None;
         }
+        self.unread = if now.is_some() { 0 } else { self.unread.saturating_add(self.stride) };
         self.reading = now.or(self.reading);
         let strides = units as f64 / self.stride as f64;
         let lost = (strides.round() as u64).saturating_sub(1);

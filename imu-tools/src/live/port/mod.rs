@@ -140,17 +140,22 @@ pub struct How {
     pub speed: f64,
 }
 
-/// The part of some bytes that no known protocol explains; `None` where they are too few to say.
-pub type Refused<'a> = &'a dyn Fn(&[u8]) -> Option<f64>;
+/// What a serial port is expected to send: by that a wrong baud rate is told from a right one.
+pub struct Expected<'a> {
+    /// The protocol, if the user named one.
+    pub protocol: Option<&'static str>,
+    /// The part of some bytes that is of no frame; `None` where they are too few to say.
+    pub refused: &'a dyn Fn(&[u8]) -> Option<f64>,
+}
 
-/// Opens a port and begins to read it. `refused` tells a wrong baud rate from a right one.
+/// Opens a port and begins to read it.
 ///
 /// # Errors
 /// When it cannot be opened: one sentence with the way out.
-pub fn open(address: &Address, how: &How, refused: Refused<'_>) -> Result<Port, Error> {
+pub fn open(address: &Address, how: &How, expected: &Expected<'_>) -> Result<Port, Error> {
     let (to, arrivals) = sync_channel(AHEAD);
     match address {
-        Address::Serial(path) => serial::open(path, how.baud, refused, to)?,
+        Address::Serial(path) => serial::open(path, how.baud, expected, to)?,
         Address::Pipe(path) => pipe::open(path, to)?,
         Address::Tcp(address) => network::open(address, to)?,
         Address::Recording(path) => replay::open(path, how, to)?,

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::SyncSender;
 use std::time::{Duration, Instant};
 
-use serial2::SerialPort;
+use serial2::{IntoSettings as _, KeepSettings, SerialPort};
 
 use super::again::{self, Again};
-use super::{Arrival, PIECE, Refused};
+use super::{Arrival, Expected, PIECE};
 use crate::error::Error;
 
 /// Usual baud rates, the most usual first.
@@ -27,6 +27,9 @@ const TOO_MANY: f64 = 0.3;
 
 /// How long a read waits, and the time between attempts to open a device that went away.
 const PAUSE: Duration = Duration::from_millis(200);
+
+/// What systems answer that are asked for the baud rate of what has none (`ENOTTY`).
+const NO_TERMINAL: i32 = 25;
 
 /// The serial ports that exist.
 #[must_use]
@@ -79,6 +82,9 @@ fn refusal(path: &Path, error: &io::Error) -> Error {
             "{name} is busy: another program has it open (a serial monitor, ModemManager, another imu \
              live); end that first"
         )),
+        _ if error.raw_os_error() == Some(NO_TERMINAL) => {
+            Error::data(format!("{name} is no serial port: {}", list()))
+        }
         _ => Error::data(format!("cannot open {name}: {error}")),
     }
 }
@@ -104,15 +110,38 @@ fn group(_: &Path) -> Option<String> {
 
 /// Opens a device that nobody else has, and hears it from now on: what waited in it came nobody knows when.
 fn connect(path: &Path, baud: u32) -> io::Result<SerialPort> {
-    let mut port = SerialPort::open(path, baud)?;
+    let mut port = SerialPort::open(path, KeepSettings)?;
+    // Before the baud rate is set: it is that of whoever has the port.
+    lock(&port)?;
+    let mut settings = port.get_configuration()?;
+    baud.apply_to_settings(&mut settings)?;
+    port.set_configuration(&settings)?;
     port.set_read_timeout(PAUSE)?;
     port.discard_input_buffer()?;
     Ok(port)
 }
 
-/// The rate at which least of the bytes is refused.
-fn find_rate(path: &Path, refused: Refused<'_>) -> Result<u32, Error> {
-    let mut best: Option<(f64, u32)> = None;
+/// Keeps a port from other programs that lock what they open, until it is closed: two readers would share its
+/// bytes out. `TIOCEXCL` would outlive us in a pseudo-terminal, and root passes it.
+#[cfg(unix)]
+fn lock(port: &SerialPort) -> io::Result<()> {
+    use std::os::fd::AsFd as _;
+    // The lock is that of what was opened, however many handles it has.
+    let file = fs::File::from(port.as_fd().try_clone_to_owned()?);
+    file.try_lock().map_err(|error| match error {
+        fs::TryLockError::WouldBlock => io::ErrorKind::ResourceBusy.into(),
+        fs::TryLockError::Error(error) => error,
+    })
+}
+
+/// Windows opens a port for one program only.
+#[cfg(not(unix))]
+fn lock(_: &SerialPort) -> io::Result<()> {
+    Ok(())
+}
+
+/// The first rate at which most of the bytes are part of frames.
+fn find_rate(path: &Path, expected: &Expected<'_>) -> Result<u32, Error> {
     let mut heard = Vec::new();
     for rate in RATES {
         let port = match connect(path, rate) {
@@ -122,13 +151,8 @@ fn find_rate(path: &Path, refused: Refused<'_>) -> Result<u32, Error> {
             Err(e) => return Err(refusal(path, &e)),
         };
         let bytes = listen(&port);
-        if let Some(share) = refused(&bytes) {
-            if share < TOO_MANY {
-                return Ok(rate);
-            }
-            if best.is_none_or(|(least, _)| share < least) {
-                best = Some((share, rate));
-            }
+        if (expected.refused)(&bytes).is_some_and(|share| share < TOO_MANY) {
+            return Ok(rate);
         }
         if bytes.len() > heard.len() {
             heard = bytes;
@@ -141,9 +165,12 @@ fn find_rate(path: &Path, refused: Refused<'_>) -> Result<u32, Error> {
              itself, or give its rate with --baud"
         )));
     }
+    let (what, way_out) = match expected.protocol {
+        Some(protocol) => (format!("not {protocol}"), "give --baud, or another --protocol"),
+        None => ("of no known protocol".to_owned(), "give --baud and --protocol"),
+    };
     Err(Error::data(format!(
-        "what {name} sends is of no known protocol at any usual baud rate: give --baud and --protocol; \
-         the first bytes are {}",
+        "what {name} sends is {what} at any usual baud rate: {way_out}; the first bytes are {}",
         super::super::shown::bytes(&heard)
     )))
 }
@@ -166,12 +193,12 @@ fn listen(port: &SerialPort) -> Vec<u8> {
 pub(super) fn open(
     path: &Path,
     baud: Option<u32>,
-    refused: Refused<'_>,
+    expected: &Expected<'_>,
     to: SyncSender<Arrival>,
 ) -> Result<(), Error> {
     let baud = match baud {
         Some(baud) => baud,
-        None => find_rate(path, refused)?,
+        None => find_rate(path, expected)?,
     };
     let port = connect(path, baud).map_err(|e| refusal(path, &e))?;
     let path = path.to_owned();
@@ -194,5 +221,22 @@ mod tests {
         assert!(said(io::ErrorKind::ResourceBusy).contains("another program has it open"));
         assert!(said(io::ErrorKind::PermissionDenied).contains("no permission to open"));
         assert!(said(io::ErrorKind::NotFound).contains("there is no port or recording"));
+        let error = connect(Path::new("/dev/null"), 9600).unwrap_err();
+        let said = refusal(Path::new("/dev/null"), &error).to_string();
+        assert!(said.starts_with("/dev/null is no serial port: "), "{said}");
+    }
+
+    /// Two readers would each have a part of the bytes. Once the first has ended, the port is free.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_port_has_one_reader() {
+        use std::os::fd::AsRawFd as _;
+        let (_ours, theirs) = SerialPort::pair().unwrap();
+        let path = fs::read_link(format!("/proc/self/fd/{}", theirs.as_raw_fd())).unwrap();
+        let first = connect(&path, 9600).unwrap();
+        let second = connect(&path, 115_200).unwrap_err();
+        assert!(refusal(&path, &second).to_string().contains("is busy"), "{second}");
+        drop(first);
+        connect(&path, 9600).unwrap();
     }
 }

@@ -25,7 +25,7 @@ pub use decoder::Decoder;
 pub use encoder::Encoder;
 pub use framer::Tally;
 pub use name::Protocol;
-pub use recognise::{Candidate, candidates, recognise};
+pub use recognise::{Candidate, candidate, candidates, recognise};
 
 #[cfg(doc)]
 use super::Message;

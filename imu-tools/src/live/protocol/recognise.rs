@@ -32,15 +32,18 @@ pub fn recognise(bytes: &[u8]) -> Option<Protocol> {
 /// All protocols, the one that explains these bytes best first.
 #[must_use]
 pub fn candidates(bytes: &[u8]) -> Vec<Candidate> {
+    let options = ReadOptions::default();
     let mut all: Vec<Candidate> =
-        Protocol::ALL.into_iter().filter_map(|p| tried(p, bytes)).collect();
+        Protocol::ALL.into_iter().filter_map(|p| candidate(p, &options, bytes)).collect();
     // The order of those that explain as much stays: first those with the stronger checksums.
     all.sort_by(|a, b| b.accepted.total_cmp(&a.accepted));
     all
 }
 
-fn tried(protocol: Protocol, bytes: &[u8]) -> Option<Candidate> {
-    let mut decoder = Decoder::new(protocol, &ReadOptions::default()).ok()?;
+/// How well one protocol does, with lines of text as `options` say; `None` where they are none for lines.
+#[must_use]
+pub fn candidate(protocol: Protocol, options: &ReadOptions, bytes: &[u8]) -> Option<Candidate> {
+    let mut decoder = Decoder::new(protocol, options).ok()?;
     decoder.feed(bytes, &mut |_| {});
     let before_end = decoder.tally();
     decoder.end(&mut |_| {});

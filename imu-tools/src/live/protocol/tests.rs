@@ -32,7 +32,8 @@ pub fn decoded_with(protocol: Protocol, options: &ReadOptions, bytes: &[u8]) -> 
     in_pieces(protocol, options, bytes, bytes.len().max(1))
 }
 
-fn in_pieces(
+/// All messages of bytes fed in pieces.
+pub fn in_pieces(
     protocol: Protocol,
     options: &ReadOptions,
     bytes: &[u8],

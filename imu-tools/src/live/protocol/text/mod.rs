@@ -8,8 +8,8 @@
 //!
 //! There is no checksum. A line is left out as a whole where a field is no number, some are missing, or
 //! there are those of two lines; a digit that became another passes. The line that is under way when
-//! listening starts is left out unless it is a header. Lines of 1024 bytes and more are none. Only
-//! a header, a decimal comma in the first row, and the sentence about them allocate.
+//! listening starts is left out unless it is a header. Lines that are longer than 1024 bytes with their end
+//! are none. Only a header, a decimal comma in the first row, and the sentence about them allocate.
 
 mod layout;
 mod time;
@@ -23,7 +23,7 @@ use super::framer::{Check, Wire};
 use layout::Layout;
 use time::Clock;
 
-/// Bytes of the longest line with its end.
+/// Bytes of the longest line, with its end.
 const LONGEST: usize = 1024;
 
 /// Numbers of the fewest columns that can be a sensor's.
@@ -115,8 +115,10 @@ impl Wire for Text {
     const LONGEST: usize = LONGEST;
 
     fn check(&self, bytes: &[u8]) -> Check {
-        let Some(end) = memchr::memchr(b'\n', bytes) else {
-            return if bytes.len() < LONGEST { Check::Short } else { Check::Not(bytes.len()) };
+        // More may be at hand, or not: that must make no difference.
+        let longest = bytes.get(..LONGEST);
+        let Some(end) = memchr::memchr(b'\n', longest.unwrap_or(bytes)) else {
+            return longest.map_or(Check::Short, |longest| Check::Not(longest.len()));
         };
         match self.line(bytes.get(..end).unwrap_or_default()) {
             Line::Header(_) => Check::Whole(end + 1),

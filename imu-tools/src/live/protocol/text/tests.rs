@@ -87,6 +87,20 @@ fn damaged_lines_are_left_out_whole() {
     }
 }
 
+/// A line is as long however much of what follows it is at hand.
+#[test]
+fn a_line_is_no_longer_in_a_piece_than_in_many() {
+    for (padding, wanted) in [(1024 - 12, 2), (1024 - 11, 1), (1500, 1)] {
+        let row = format!("1,2,3,4,5,{}6\n", "0".repeat(padding));
+        let text = format!("gx,gy,gz,ax,ay,az\n{row}1,2,3,4,5,6\n");
+        for piece in [1, 67, 1000, text.len()] {
+            let options = ReadOptions::default();
+            let messages = tests::in_pieces(Protocol::Text, &options, text.as_bytes(), piece);
+            assert_eq!(messages.len(), wanted, "{padding} {piece}");
+        }
+    }
+}
+
 #[test]
 fn wrong_columns_are_a_usage_error() {
     let columns = Some("t,gx,gy".into());
