@@ -137,7 +137,12 @@ impl Live {
         });
         output::heed_signals();
         let session = self.session(&address, &options, checkpoint.as_deref())?;
-        let how = How { baud: self.baud, reading: self.reading.options(), speed: self.speed };
+        let how = How {
+            baud: self.baud,
+            reading: self.reading.options(),
+            speed: self.speed,
+            again_ns: session.taken_before(),
+        };
         let protocol = intake::named(self.protocol, &how.reading);
         let decode: Option<Box<dyn Decode>> = if address.comes_again() {
             None

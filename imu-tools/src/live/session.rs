@@ -118,6 +118,12 @@ impl Session {
         kept(bytes).map(|kept| kept.state.ended)
     }
 
+    /// The stamp up to which samples of all sensors were taken before it went on, ns.
+    #[must_use]
+    pub fn taken_before(&self) -> Option<i64> {
+        self.taken.into_iter().flatten().min()
+    }
+
     /// The whole state, for a checkpoint; `ended`: it has come to its end.
     ///
     /// # Errors

@@ -138,6 +138,8 @@ pub struct How {
     pub reading: ReadOptions,
     /// How many times faster than it was recorded a recording comes; 0: as fast as can be.
     pub speed: f64,
+    /// Samples of a recording up to this stamp, ns, were taken before: they come at once.
+    pub again_ns: Option<i64>,
 }
 
 /// What a serial port is expected to send: by that a wrong baud rate is told from a right one.

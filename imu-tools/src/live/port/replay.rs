@@ -14,9 +14,9 @@ const PACE: Duration = Duration::from_millis(50);
 /// Opens the recording, and begins to read.
 pub(super) fn open(path: &Path, how: &How, to: SyncSender<Arrival>) -> Result<(), Error> {
     let source = recording::open(path, &how.reading)?;
-    let speed = how.speed;
+    let (speed, again_ns) = (how.speed, how.again_ns);
     std::thread::spawn(move || {
-        let told = match play(source, speed, &to) {
+        let told = match play(source, speed, again_ns, &to) {
             None => return,
             Some(Ok(())) => Arrival::End,
             Some(Err(error)) => Arrival::Failed(error),
@@ -27,10 +27,11 @@ pub(super) fn open(path: &Path, how: &How, to: SyncSender<Arrival>) -> Result<()
     Ok(())
 }
 
-/// Hands all blocks on; `None` when nobody listens.
+/// Hands all blocks on, what is stamped up to `again_ns` at once; `None` when nobody listens.
 fn play(
     mut source: Box<dyn Source>,
     speed: f64,
+    again_ns: Option<i64>,
     to: &SyncSender<Arrival>,
 ) -> Option<Result<(), Error>> {
     let mut start = None;
@@ -41,6 +42,10 @@ fn play(
             Ok(false) => return Some(Ok(())),
             Ok(true) if speed > 0.0 => {
                 let samples = source.samples().unwrap_or_default();
+                if let Some(again_ns) = again_ns {
+                    let again = before(&mut block, again_ns);
+                    to.send(Arrival::Samples(again, samples)).ok()?;
+                }
                 let (began, first_ns) = match (start, first(&block)) {
                     (Some(start), _) => start,
                     (None, Some(first_ns)) => (Instant::now(), first_ns),
@@ -80,4 +85,26 @@ fn before(block: &mut Block, until_ns: i64) -> Block {
     let later = block.temperature.iter().position(|t| t.stamp_ns > until_ns);
     let temperature = block.temperature.drain(..later.unwrap_or(block.temperature.len())).collect();
     Block { gyroscope, accelerometer, temperature, ..Block::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Preset, Scene, Simulator};
+
+    /// An hour at the speed of its recording, of which all but the end was taken before.
+    #[test]
+    fn what_was_taken_before_comes_at_once() {
+        let scene = Scene { start_ns: 0, duration_ns: 3_600_000_000_000, ..Preset::Mid.scene() };
+        let source = Box::new(Simulator::new(&scene).unwrap());
+        let (to, arrivals) = std::sync::mpsc::sync_channel(1024);
+        std::thread::spawn(move || play(source, 1.0, Some(3_599_900_000_000), &to));
+        let mut samples = 0;
+        for arrival in arrivals {
+            if let Arrival::Samples(block, _) = arrival {
+                samples += block.gyroscope.len();
+            }
+        }
+        assert_eq!(samples, 720_000);
+    }
 }
