@@ -171,9 +171,11 @@ impl<R: BufRead> Rows<'_, R> {
     /// The next line, without its end; `false` behind the last.
     fn next(&mut self) -> Result<bool, Error> {
         self.line += 1;
-        self.text.clear();
-        let read = (&mut self.lines).take(LONGEST_LINE).read_line(&mut self.text);
+        let mut bytes = std::mem::take(&mut self.text).into_bytes();
+        bytes.clear();
+        let read = (&mut self.lines).take(LONGEST_LINE).read_until(b'\n', &mut bytes);
         let count = read.map_err(|source| Error::io("read", Path::new(self.name), source))?;
+        self.text = String::from_utf8(bytes).map_err(|_| self.wrong("it is not text in UTF-8"))?;
         self.is_whole = count == 0 && self.is_whole || self.text.ends_with('\n');
         self.text.truncate(self.text.trim_end().len());
         Ok(count > 0)

@@ -84,6 +84,8 @@ fn what_is_no_curve_is_refused_with_its_line() {
         let error = open(&path).err().unwrap().to_string();
         assert!(error.contains(words), "{words}: {error}");
     }
+    let error = read("it", &[lines[0].as_bytes(), b"\n# form: \xff\n"].concat()[..]).err().unwrap();
+    assert_eq!(error.to_string(), "it, line 2: it is not text in UTF-8");
     std::fs::write(&path, "# timestamp tx").unwrap();
     assert!(open(&path).err().unwrap().to_string().contains("holds no poses"));
     assert!(open(folder.path()).is_err());
