@@ -72,7 +72,7 @@ impl End {
         if beyond {
             *self = Self { value: x, run: 1, flat: 0 };
         } else if x == self.value {
-            self.run += 1;
+            self.run = self.run.saturating_add(1);
             if self.run == FLAT {
                 self.flat += u64::from(FLAT);
             } else if self.run > FLAT {

@@ -135,13 +135,12 @@ impl Live {
             let wanted = self.resume || !address.comes_again();
             wanted.then(|| PathBuf::from(CHECKPOINT))
         });
-        output::heed_signals();
         let session = self.session(&address, &options, checkpoint.as_deref())?;
         let how = How {
             baud: self.baud,
             reading: self.reading.options(),
             speed: self.speed,
-            again_ns: session.taken_before(),
+            again_ns: session.taken_until(),
         };
         let protocol = intake::named(self.protocol, &how.reading);
         let decode: Option<Box<dyn Decode>> = if address.comes_again() {
@@ -154,6 +153,7 @@ impl Live {
             refused: &|bytes| intake::refused(protocol, &how.reading, bytes),
         };
         let port = port::open(&address, &how, &expected)?;
+        output::heed_signals();
         let keep = Keep {
             checkpoint: checkpoint
                 .map(|path| (path, Duration::from_secs_f64(self.checkpoint_every))),

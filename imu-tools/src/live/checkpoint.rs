@@ -3,7 +3,7 @@
 //! | bytes | what |
 //! |---|---|
 //! | 8 | `IMULIVE` and a zero |
-//! | 2 | version of what follows (1), little-endian |
+//! | 2 | version of what follows (2), little-endian |
 //! | 8 | length of the payload, little-endian |
 //! | … | the payload |
 //! | 4 | CRC-32 (IEEE 802.3) of all bytes before, little-endian |
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use crate::error::Error;
 
 const MAGIC: &[u8; 8] = b"IMULIVE\0";
-const VERSION: u16 = 1;
+const VERSION: u16 = 2;
 const HEADER: usize = 18;
 const CRC: usize = 4;
 
@@ -35,7 +35,7 @@ pub struct Found {
 enum Refused {
     Missing,
     Damaged(&'static str),
-    Newer(u16),
+    Other(u16),
     Unreadable(io::Error),
 }
 
@@ -73,14 +73,14 @@ pub fn write(path: &Path, payload: &[u8]) -> Result<(), Error> {
 /// The latest checkpoint at `path` that is whole; `None` where there never was one.
 ///
 /// # Errors
-/// When it is of a newer version of this program, or none that there is is whole.
+/// When it is of another version of this program, or none that there is is whole.
 pub fn read(path: &Path) -> Result<Option<Found>, Error> {
     let (part, previous) = (beside(path, ".part"), beside(path, ".previous"));
     let why = match one(path) {
         Ok(payload) => return Ok(Some(Found { payload, warning: None })),
-        Err(Refused::Newer(version)) => {
+        Err(Refused::Other(version)) => {
             return Err(Error::data(format!(
-                "the checkpoint {} is of a newer version of this program ({version}; this one reads \
+                "the checkpoint {} is of another version of this program ({version}; this one reads \
                  {VERSION}): resume with that one, or begin anew with another --checkpoint",
                 path.display()
             )));
@@ -130,14 +130,14 @@ fn one(path: &Path) -> Result<Vec<u8>, Refused> {
         return Err(Refused::Damaged("is cut off"));
     };
     let whole = u32::from_le_bytes(*crc) == crc32fast::hash(body);
-    if version > VERSION && whole {
-        return Err(Refused::Newer(version));
+    if version != VERSION && whole {
+        return Err(Refused::Other(version));
     }
     let payload = body.get(HEADER..).unwrap_or_default();
     if payload.len() as u64 != u64::from_le_bytes(l) {
         return Err(Refused::Damaged("is cut off"));
     }
-    if !whole || version != VERSION {
+    if !whole {
         return Err(Refused::Damaged("is damaged (its checksum does not match)"));
     }
     Ok(payload.to_vec())
@@ -196,18 +196,21 @@ mod tests {
     }
 
     #[test]
-    fn a_newer_version_is_refused_and_not_taken_for_damage() {
+    fn another_version_is_refused_and_not_taken_for_damage() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("c");
         write(&path, b"one").unwrap();
         write(&path, b"two").unwrap();
-        let mut bytes = fs::read(&path).unwrap();
-        bytes[8] = 2;
-        let end = bytes.len() - CRC;
-        let crc = crc32fast::hash(&bytes[..end]).to_le_bytes();
-        bytes[end..].copy_from_slice(&crc);
-        fs::write(&path, &bytes).unwrap();
-        let error = read(&path).unwrap_err().to_string();
-        assert!(error.contains("newer version of this program (2; this one reads 1)"), "{error}");
+        for version in [1, 3] {
+            let mut bytes = fs::read(&path).unwrap();
+            bytes[8] = version;
+            let end = bytes.len() - CRC;
+            let crc = crc32fast::hash(&bytes[..end]).to_le_bytes();
+            bytes[end..].copy_from_slice(&crc);
+            fs::write(&path, &bytes).unwrap();
+            let error = read(&path).unwrap_err().to_string();
+            let words = format!("another version of this program ({version}; this one reads 2)");
+            assert!(error.contains(&words), "{error}");
+        }
     }
 }

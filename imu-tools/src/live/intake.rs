@@ -23,6 +23,9 @@ const PATIENCE: u64 = 16_384;
 /// The part of them that is too many.
 const TOO_MANY: f64 = 0.95;
 
+/// Bytes without a sample after which a stream of whole frames is given up.
+const FRUITLESS: u64 = 65_536;
+
 /// From bytes to samples.
 pub struct Intake {
     name: String,
@@ -107,10 +110,21 @@ impl Intake {
         self.state = State::Known(decoder);
         Ok(())
     }
+
+    /// Takes what the decoder waits with: nothing that comes belongs to it.
+    fn end(&mut self, pieces: &mut Pieces<'_>) {
+        let Self { state: State::Known(decoder), clock, latest_ns, .. } = self else { return };
+        decoder.end(&mut |message| {
+            clock.take(*latest_ns, &message, |message, taken| pieces.take(message, &taken));
+        });
+    }
 }
 
 impl Decode for Intake {
     fn feed(&mut self, arrival_ns: i64, bytes: &[u8], to: &mut Vec<Step>) -> Result<(), Error> {
+        if bytes.is_empty() {
+            return Ok(());
+        }
         self.latest_ns = arrival_ns;
         match &mut self.state {
             State::Unknown { first, pieces, .. } => {
@@ -131,6 +145,9 @@ impl Decode for Intake {
                         shown::bytes(bytes)
                     )));
                 }
+                if tally.bytes > FRUITLESS && tally.messages == 0 {
+                    return Err(fruitless(&self.name, decoder.protocol(), tally.bytes));
+                }
                 Ok(())
             }
         }
@@ -138,21 +155,16 @@ impl Decode for Intake {
 
     fn reopened(&mut self, to: &mut Vec<Step>) {
         let mut pieces = Pieces::new(to);
+        self.end(&mut pieces);
         self.clock.reopened(|message, taken| pieces.take(message, &taken));
         pieces.close();
     }
 
     fn finish(&mut self, to: &mut Vec<Step>) -> Result<(), Error> {
         self.look(true, to)?;
-        let Self { state, clock, latest_ns, .. } = self;
         let mut pieces = Pieces::new(to);
-        if let State::Known(decoder) = state {
-            let arrival_ns = *latest_ns;
-            decoder.end(&mut |message| {
-                clock.take(arrival_ns, &message, |message, taken| pieces.take(message, &taken));
-            });
-        }
-        clock.finish(|message, taken| pieces.take(message, &taken));
+        self.end(&mut pieces);
+        self.clock.finish(|message, taken| pieces.take(message, &taken));
         pieces.close();
         Ok(())
     }
@@ -166,6 +178,7 @@ impl Decode for Intake {
         };
         let tally = decoder.tally();
         link.protocol = Some(decoder.protocol().name());
+        link.learnt = decoder.learnt().map(str::to_owned);
         (link.bytes, link.refused) = (tally.bytes, tally.refused);
         (link.bad_checksums, link.messages) = (tally.damaged, tally.messages);
         let status = self.clock.status();
@@ -178,6 +191,17 @@ impl Decode for Intake {
             restarts: status.restarts,
         });
     }
+}
+
+/// Whole frames, none of a sensor.
+fn fruitless(name: &str, protocol: Protocol, bytes: u64) -> Error {
+    let way_out = match protocol {
+        Protocol::Text => "say what the columns are, such as --columns t,gx,gy,gz,ax,ay,az",
+        _ => "set the device to send its angular rates and accelerations",
+    };
+    Error::data(format!(
+        "{name} sends {protocol}, and none of {bytes} bytes tells what a sensor measured: {way_out}"
+    ))
 }
 
 /// What no protocol explains.
@@ -373,6 +397,82 @@ mod tests {
         assert_eq!((stamps.samples, stamps.duplicates, stamps.backward), (8000, 0, 0));
         // From sample 3999 to 6000, known to a burst.
         assert!(stamps.missing.abs_diff(2000) <= 16, "{stamps:?}");
+    }
+
+    /// What `intake` says of pieces that came at these times, ns.
+    fn heard<'a>(
+        intake: &mut Intake,
+        pieces: impl Iterator<Item = (i64, &'a [u8])>,
+    ) -> (Vec<Step>, LinkClock) {
+        let (mut steps, mut link) = (Vec::new(), Link::default());
+        pieces.for_each(|(at_ns, piece)| intake.feed(at_ns, piece, &mut steps).unwrap());
+        intake.finish(&mut steps).unwrap();
+        intake.tell(&mut link);
+        (steps, link.clock.unwrap())
+    }
+
+    /// The unit of time is known from the 17th line on; a WitMotion that is opened within a cycle has its first
+    /// message without a time.
+    #[test]
+    fn ticks_count_although_the_first_messages_have_none() {
+        let sent = || (0..1000_u64).filter(|k| !(600..650).contains(k));
+        let mut text = b"t,gx,gy,gz\n".to_vec();
+        let mut witmotion = Vec::new();
+        let mut encoder = Encoder::new(Protocol::WitMotion);
+        for k in sent() {
+            text.extend_from_slice(format!("{},0.1,0.2,{}\n", 5000 + k * 10, k % 7).as_bytes());
+            let ticks = Ticks { value: k * 10_000, per_second: 1_000_000, wraps_at: None };
+            let message = Message {
+                gyroscope: Some([0.1, 0.2, 0.3]),
+                accelerometer: Some([0.0, 0.0, 9.75]),
+                ticks: Some(ticks),
+                ..Message::default()
+            };
+            encoder.encode(&message, &mut witmotion);
+        }
+        let lines: Vec<&[u8]> = text.split_inclusive(|byte| *byte == b'\n').skip(1).collect();
+        let cycles: Vec<&[u8]> = witmotion.chunks(33).collect();
+        let at = |k: u64| (k as i64 * 10 / 16 + 1) * 16_000_000;
+        for (protocol, first, messages) in [
+            (Protocol::Text, &b"t,gx,gy,gz\n"[..], lines),
+            (Protocol::WitMotion, &cycles[0][11..], cycles.clone()),
+        ] {
+            let mut intake = Intake::new("it", Some(protocol), &ReadOptions::default()).unwrap();
+            let messages = sent().map(at).zip(messages);
+            let begun = std::iter::once((0, first)).chain(messages);
+            let clock = heard(&mut intake, begun).1;
+            assert_eq!((clock.lost, clock.lost_is_certain), (50, true), "{protocol}");
+        }
+    }
+
+    #[test]
+    fn what_a_hang_up_cut_is_not_joined_to_what_comes_behind_it() {
+        let columns = Some("gx,gy,gz".into());
+        let options = ReadOptions { columns, ..ReadOptions::default() };
+        let mut intake = Intake::new("it", None, &options).unwrap();
+        let mut steps = Vec::new();
+        intake.feed(1_000_000, b"\n1,2,3\n4,5,", &mut steps).unwrap();
+        intake.reopened(&mut steps);
+        intake.feed(2_000_000, b"66\n7,8,9\n", &mut steps).unwrap();
+        intake.finish(&mut steps).unwrap();
+        let blocks = steps.iter().filter_map(|step| match step {
+            Step::Samples(block, _) => Some(block),
+            Step::Restart => None,
+        });
+        let values: Vec<_> = blocks.flat_map(|b| &b.gyroscope).map(|s| s.value).collect();
+        assert_eq!(values, [[1.0, 2.0, 3.0], [7.0, 8.0, 9.0]]);
+    }
+
+    #[test]
+    fn lines_of_which_nobody_says_what_they_are_end_with_the_way_out() {
+        let lines = b"\n1,2,3,4,5,6\n".repeat(6000);
+        let mut intake = Intake::new("tty", None, &ReadOptions::default()).unwrap();
+        let mut fed = lines.chunks(4096).map(|piece| intake.feed(0, piece, &mut Vec::new()));
+        let error = fed.find_map(Result::err).unwrap().to_string();
+        assert!(
+            error.starts_with("tty sends text, and none of 6") && error.contains("--columns"),
+            "{error}"
+        );
     }
 
     #[test]

@@ -7,6 +7,8 @@ pub struct Link {
     pub name: String,
     /// The protocol, once it is known.
     pub protocol: Option<&'static str>,
+    /// What was found out about the stream, or taken for granted.
+    pub learnt: Option<String>,
     /// Why nothing comes now, if so: the device was unplugged.
     pub gone: Option<String>,
     /// Bytes that came.

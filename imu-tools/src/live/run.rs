@@ -12,7 +12,7 @@ use super::port::{Arrival, Port};
 use super::session::{Session, View};
 use crate::error::Error;
 use crate::output::{Output, end_is_asked};
-use crate::recording::{Block, SampleKind, Sink};
+use crate::recording::{Block, Note, SampleKind, Sink};
 
 /// Nothing left to take, the loop sleeps so long: to wake for every piece would cost as much as all else,
 /// and when bytes came is noted by who reads them. Keys and signals are looked at as often, at least.
@@ -117,6 +117,8 @@ pub struct Keep {
 impl Keep {
     fn checkpoint(&self, session: &Session, ended: bool) -> Result<(), Error> {
         match &self.checkpoint {
+            // There is nothing to go on with.
+            Some(_) if session.samples() == [0, 0] => Ok(()),
             Some((path, _)) => checkpoint::write(path, &session.to_bytes(ended)?),
             None => Ok(()),
         }
@@ -161,13 +163,16 @@ impl Live<'_> {
     /// What the port says, or when something cannot be written.
     pub fn run(mut self, face: &mut dyn Face) -> Result<(View, Ended), Error> {
         let mut link = Link { name: self.port.name.clone(), ..Link::default() };
-        let ended = self.follow(face, &mut link);
+        let mut told = None;
+        let followed = self.follow(face, &mut link, &mut told);
         let mut steps = Vec::new();
         let last = self.decode.as_mut().map_or(Ok(()), |decode| decode.finish(&mut steps));
-        let ended = ended.and_then(|ended| last.and(self.proceed(steps)).map(|()| ended));
+        let taken = self.proceed(steps);
+        let ended = followed.and_then(|ended| last.and(taken).map(|()| ended));
         if let Some(decode) = &self.decode {
             decode.tell(&mut link);
         }
+        say_learnt(&link, &mut told, face);
         let over = matches!(ended, Ok(Ended::Goal | Ended::Input | Ended::Quit));
         let kept = self.keep.checkpoint(&self.session, over);
         let closed = self.keep.close();
@@ -176,7 +181,13 @@ impl Live<'_> {
         Ok((self.session.view(&link), ended))
     }
 
-    fn follow(&mut self, face: &mut dyn Face, link: &mut Link) -> Result<Ended, Error> {
+    /// `told` is what the user was told of the stream.
+    fn follow(
+        &mut self,
+        face: &mut dyn Face,
+        link: &mut Link,
+        told: &mut Option<String>,
+    ) -> Result<Ended, Error> {
         let (mut shown, mut flushed, mut kept) = (Instant::now(), Instant::now(), Instant::now());
         let (mut between, mut look_at_s) = (face.every(), 0.0);
         loop {
@@ -222,7 +233,9 @@ impl Live<'_> {
             }
             if shown.elapsed() >= between {
                 let start = Instant::now();
-                face.show(&self.view(link))?;
+                let view = self.view(link);
+                say_learnt(link, told, face);
+                face.show(&view)?;
                 shown = Instant::now();
                 between = face.every().max(start.elapsed() * REST);
             }
@@ -255,6 +268,8 @@ impl Live<'_> {
                 self.proceed(steps)?;
             }
             Arrival::Samples(block, samples) => self.take(block, samples)?,
+            Arrival::Note(Note::Info(sentence)) => face.say(&sentence),
+            Arrival::Note(Note::Warning(sentence)) => face.say(&format!("warning: {sentence}")),
             Arrival::Gone(why) => {
                 face.say(&format!("{}: {why}; waiting for it to come back", link.name));
                 link.gone = Some(why);
@@ -301,8 +316,11 @@ impl Live<'_> {
                 self.keep.checkpoint(&self.session, false)?;
                 self.keep.flush()?;
                 let view = self.view(link);
-                let said = (self.save)(&view)?;
-                face.say(&said);
+                match (self.save)(&view) {
+                    Ok(said) => face.say(&said),
+                    // The session goes on: the results can be saved later, elsewhere.
+                    Err(error) => face.say(&format!("not saved: {error}")),
+                }
             }
             Key::Pause => self.session.pause(),
             Key::Mark => {
@@ -312,6 +330,14 @@ impl Live<'_> {
             Key::Quit => {}
         }
         Ok(())
+    }
+}
+
+/// Says what was found out about the stream, once.
+fn say_learnt(link: &Link, told: &mut Option<String>, face: &mut dyn Face) {
+    if link.learnt != *told {
+        told.clone_from(&link.learnt);
+        told.iter().for_each(|sentence| face.say(sentence));
     }
 }
 

@@ -1,13 +1,15 @@
 //! One calibration while it runs: what is taken, left out, kept and shown. No file, port or screen is
 //! known here.
 
+use std::path::Path;
+
 use serde::{Deserialize, Serialize};
 
 use super::link::Link;
 use crate::calibrate::live::{Running, Snapshot};
 use crate::calibrate::{Calibration, Options};
 use crate::error::Error;
-use crate::recording::{Block, Sample};
+use crate::recording::Block;
 
 /// A moment that the user marked.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
@@ -33,9 +35,10 @@ pub struct Session {
     name: String,
     running: Running,
     kept: State,
-    /// Samples up to these stamps were taken before; `None`: not any more, or never.
+    /// Stamps of the last samples before it went on with others; `None`: not any more, or never.
     taken: [Option<i64>; 2],
-    before: Before,
+    /// How many of what comes came before: gyroscope, accelerometer, temperature.
+    skip: [u64; 3],
     paused: bool,
 }
 
@@ -45,6 +48,8 @@ struct State {
     name: String,
     first_ns: Option<i64>,
     marks: Vec<Mark>,
+    /// What came: gyroscope, accelerometer, temperature.
+    came: [u64; 3],
     /// Times that it went on from a checkpoint.
     resumed: u32,
     /// It ended as it should: there is nothing to go on with.
@@ -87,7 +92,7 @@ impl Session {
             running: Running::new(options),
             kept: State { name: name.to_owned(), ..State::default() },
             taken: [None; 2],
-            before: Before::IsPast,
+            skip: [0; 3],
             paused: false,
         }
     }
@@ -95,7 +100,7 @@ impl Session {
     /// Goes on with what [`to_bytes`](Self::to_bytes) kept.
     ///
     /// # Errors
-    /// When the bytes are not such.
+    /// When the bytes are not such, or of another recording.
     pub fn resume(
         name: &str,
         options: &Options,
@@ -103,10 +108,21 @@ impl Session {
         before: Before,
     ) -> Result<Self, Error> {
         let kept = kept(bytes)?;
+        let of = |name: &str| Path::new(name).file_name().map(ToOwned::to_owned);
+        if before == Before::ComesAgain && of(&kept.state.name) != of(name) {
+            return Err(Error::usage(format!(
+                "the checkpoint is of {}, not of {name}: name another with --checkpoint, or begin anew \
+                 with --fresh",
+                kept.state.name
+            )));
+        }
         let running = Running::from_bytes(kept.running, options)?;
         let state = State { resumed: kept.state.resumed + 1, ended: false, ..kept.state };
-        let taken = running.last_ns();
-        let session = Self { running, kept: state, taken, before, ..Self::new(name, options) };
+        let (skip, taken) = match before {
+            Before::ComesAgain => (state.came, [None; 2]),
+            Before::IsPast => ([0; 3], running.last_ns()),
+        };
+        let session = Self { running, kept: state, taken, skip, ..Self::new(name, options) };
         Ok(session)
     }
 
@@ -118,10 +134,16 @@ impl Session {
         kept(bytes).map(|kept| kept.state.ended)
     }
 
-    /// The stamp up to which samples of all sensors were taken before it went on, ns.
+    /// The stamp up to which samples of all sensors were taken, ns.
     #[must_use]
-    pub fn taken_before(&self) -> Option<i64> {
-        self.taken.into_iter().flatten().min()
+    pub fn taken_until(&self) -> Option<i64> {
+        self.running.last_ns().into_iter().flatten().min()
+    }
+
+    /// Samples taken of each sensor, gyroscope first.
+    #[must_use]
+    pub fn samples(&self) -> [u64; 2] {
+        self.running.samples()
     }
 
     /// The whole state, for a checkpoint; `ended`: it has come to its end.
@@ -137,9 +159,7 @@ impl Session {
 
     /// Takes samples, and leaves in `block` those that were taken.
     pub fn take(&mut self, block: &mut Block) {
-        if self.taken != [None; 2] {
-            self.pass_over(block);
-        }
+        self.pass_over(block);
         if self.paused {
             block.clear();
         }
@@ -153,34 +173,30 @@ impl Session {
         self.running.push(block);
     }
 
-    /// Leaves out what was taken before the session went on.
+    /// Leaves out what came before the session went on.
     fn pass_over(&mut self, block: &mut Block) {
-        let Block { gyroscope, accelerometer, .. } = block;
-        match self.before {
-            Before::ComesAgain => {
-                for (list, taken) in [gyroscope, accelerometer].into_iter().zip(&mut self.taken) {
-                    let Some(last) = *taken else { continue };
-                    let new = |s: &Sample| s.stamp_ns > last;
-                    let first = list.iter().position(new);
-                    list.drain(..first.unwrap_or(list.len()));
-                    if first.is_some() {
-                        *taken = None;
-                    }
-                }
-            }
-            Before::IsPast => {
-                let lists = [&*gyroscope, &*accelerometer];
-                let set_back = lists.into_iter().zip(self.taken).any(|(list, taken)| {
-                    list.first().zip(taken).is_some_and(|(s, last)| s.stamp_ns <= last)
-                });
-                if lists.into_iter().all(|list| list.is_empty()) {
-                    return;
-                }
-                self.taken = [None; 2];
-                if set_back {
-                    self.restart();
-                }
-            }
+        let [gyroscope, accelerometer, temperature] = &mut self.skip;
+        skip(&mut block.gyroscope, gyroscope);
+        skip(&mut block.accelerometer, accelerometer);
+        skip(&mut block.temperature, temperature);
+        let lists = [&block.gyroscope, &block.accelerometer];
+        let lengths = [lists[0].len(), lists[1].len(), block.temperature.len()];
+        for (came, length) in self.kept.came.iter_mut().zip(lengths) {
+            *came += length as u64;
+        }
+        if self.taken == [None; 2] || lists.iter().all(|list| list.is_empty()) {
+            return;
+        }
+        let back = lists.into_iter().zip(self.taken).filter_map(|(list, taken)| {
+            list.first().zip(taken).map(|(sample, last)| last.saturating_sub(sample.stamp_ns))
+        });
+        let set_back_ns = back.max().filter(|back_ns| *back_ns >= 0);
+        self.taken = [None; 2];
+        if let Some(back_ns) = set_back_ns {
+            // The time that it has run goes on.
+            let first_ns = &mut self.kept.first_ns;
+            *first_ns = first_ns.map(|first| first.saturating_sub(back_ns));
+            self.restart();
         }
     }
 
@@ -246,9 +262,17 @@ fn kept(bytes: &[u8]) -> Result<Kept<'_>, Error> {
         .map_err(|e| Error::data(format!("the checkpoint holds no session: {e}")))
 }
 
+/// Leaves out as many as are to be skipped, which are fewer then.
+fn skip<T>(list: &mut Vec<T>, skip: &mut u64) {
+    let many = usize::try_from(*skip).unwrap_or(usize::MAX).min(list.len());
+    list.drain(..many);
+    *skip -= many as u64;
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recording::Sample;
 
     fn block(range: std::ops::Range<i64>) -> Block {
         let sample = |i: i64| Sample { stamp_ns: i * 1_000_000, value: [(i * i % 101) as f64; 3] };
@@ -277,6 +301,30 @@ mod tests {
     }
 
     #[test]
+    fn a_clock_that_is_set_back_in_a_recording_is_gone_on_with_at_the_next_sample() {
+        let options = Options::default();
+        let all = || {
+            let mut all = block(0..4000);
+            all.gyroscope.extend(block(2000..6000).gyroscope);
+            all
+        };
+        let mut whole = Session::new("b/it.bag", &options);
+        whole.take(&mut all());
+        let mut first = Session::new("a/it.bag", &options);
+        let mut part = all();
+        part.gyroscope.truncate(5000);
+        first.take(&mut part);
+        let bytes = first.to_bytes(false).unwrap();
+        let resume = |name| Session::resume(name, &options, &bytes, Before::ComesAgain);
+        let mut second = resume("b/it.bag").unwrap();
+        second.take(&mut all());
+        assert_eq!(told(&second), told(&whole));
+        let error = resume("a/other.bag").err().unwrap();
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().starts_with("the checkpoint is of a/it.bag, not of"), "{error}");
+    }
+
+    #[test]
     fn the_time_between_is_a_gap_and_a_clock_set_back_a_restart() {
         let options = Options::default();
         let mut first = Session::new("it", &options);
@@ -288,6 +336,9 @@ mod tests {
             let noise = second.view(&Link::default()).snapshot.calibration.gyroscope.unwrap();
             assert_eq!((noise.stamps.missing, noise.record_means.len()), (missing, records));
             assert_eq!(noise.stamps.samples, 10_000);
+            // A clock that was set back does not take back the time that it ran.
+            let span_s = if from == 100 { 9.998 } else { 10.999 };
+            assert!((second.span_s() - span_s).abs() < 1e-9, "{}", second.span_s());
         }
     }
 

@@ -278,6 +278,26 @@ fn what_cannot_be_is_one_sentence() {
     }
 }
 
+/// A session that took nothing leaves nothing to go on with.
+#[test]
+fn what_holds_no_sample_leaves_no_checkpoint() {
+    use std::io::Write as _;
+    let folder = tempfile::tempdir().unwrap();
+    let checkpoint = folder.path().join("c");
+    let mut child = imu()
+        .args(["live", "-", "--checkpoint", text(&checkpoint)])
+        .stdin(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let noise: Vec<u8> =
+        (0..9000_u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+    child.stdin.take().unwrap().write_all(&noise).unwrap();
+    let said = said(&child.wait_with_output().unwrap());
+    assert_eq!((said.code, checkpoint.exists()), (1, false), "{}", said.err);
+    assert!(said.err.contains("is of no known protocol"), "{}", said.err);
+}
+
 /// Ends a session as Ctrl-C does, and takes its report.
 #[cfg(target_os = "linux")]
 fn interrupt(child: Child) -> imu_tests::command::Said {

@@ -13,6 +13,9 @@ const KNOWN: f64 = 4e-3;
 const SEEN_NS: i64 = 1_500_000_000;
 const SEEN_BURSTS: usize = 16;
 
+/// Fewer readings show no counter.
+const FEWEST_READINGS: usize = 4;
+
 /// A counter that got so far ahead of the host, ns, was set, or began anew.
 const AHEAD_NS: f64 = 1e9;
 
@@ -39,16 +42,18 @@ pub(super) fn from(
     let (origin_ns, first) = held.first()?;
     let source = source(held);
     let steps = steps(held, source);
-    let stride = median(steps.iter().skip(1).copied()).unwrap_or(1).max(1);
+    let stride = median(steps.iter().flatten().copied()).unwrap_or(1).max(1);
+    let passed = steps.iter().map(|step| step.unwrap_or(stride) as f64);
     let points: Vec<(f64, f64)> = held
         .iter()
-        .zip(steps.iter().scan(0.0, |units, step| {
-            *units += *step as f64;
+        .zip(std::iter::once(0.0).chain(passed).scan(0.0, |units, step| {
+            *units += step;
             Some(*units)
         }))
         .map(|((arrival_ns, _), units)| (units, arrival_ns.saturating_sub(*origin_ns) as f64))
         .collect();
-    let tick_ns = first.ticks.map(|t| 1e9 / t.per_second.max(1) as f64);
+    let ticks = held.iter().find_map(|(_, message)| message.ticks);
+    let tick_ns = ticks.map(|t| 1e9 / t.per_second.max(1) as f64);
     let tick_ns = tick_ns.filter(|_| source == Source::Ticks);
     let known = before.filter(|b| b.source() == source).map(Track::unit_ns);
     let nominal = nominal_rate.map(|rate| 1e9 / (rate * stride as f64));
@@ -79,30 +84,27 @@ pub(super) fn from(
     }))
 }
 
-/// Ticks where all messages have them and most of them differ; else counts; else nothing.
+/// Ticks where some messages up to the last one have them and most of those differ; else counts; else nothing.
+/// The first messages may lack them: the unit of a text's time is not known yet, a cycle was cut.
 fn source(held: &[(i64, Message)]) -> Source {
     let shows = |source: Source| {
         let readings = || held.iter().filter_map(move |(_, m)| Reading::of(source, m));
         let moved = readings().zip(readings().skip(1)).filter(|(a, b)| a.value != b.value).count();
-        readings().count() == held.len() && 2 * (moved + 1) >= held.len()
+        let last = held.last().and_then(|(_, message)| Reading::of(source, message));
+        let count = readings().count();
+        count >= FEWEST_READINGS.min(held.len()) && last.is_some() && 2 * (moved + 1) >= count
     };
     let found = [Source::Ticks, Source::Count].into_iter().find(|source| shows(*source));
     found.unwrap_or(Source::Arrival)
 }
 
-/// Units from each message to the next, 0 of the first.
-fn steps(held: &[(i64, Message)], source: Source) -> Vec<u64> {
-    let mut before = None;
-    let step = |(_, message): &(i64, Message)| {
-        let now = Reading::of(source, message);
-        let last = before.replace(now);
-        match (last, now) {
-            (None, _) => 0,
-            (Some(Some(last)), Some(now)) => now.since(last).unwrap_or(0),
-            (Some(_), _) => 1,
-        }
+/// Units from each message to the next, where both have a reading.
+fn steps(held: &[(i64, Message)], source: Source) -> Vec<Option<u64>> {
+    let readings = || held.iter().map(|(_, message)| Reading::of(source, message));
+    let step = |(before, now): (Option<Reading>, Option<Reading>)| {
+        before.zip(now).map(|(before, now)| now.since(before).unwrap_or(0))
     };
-    held.iter().map(step).collect()
+    readings().zip(readings().skip(1)).map(step).collect()
 }
 
 /// The latest message of each burst, which waited least.

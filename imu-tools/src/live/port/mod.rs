@@ -15,7 +15,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use crate::error::Error;
-use crate::recording::{Block, ReadOptions, SampleKind};
+use crate::recording::{Block, Note, ReadOptions, SampleKind};
 pub use serial::available;
 
 /// Pieces that wait to be taken, at most: some seconds of any sensor.
@@ -36,6 +36,8 @@ pub enum Arrival {
     },
     /// Samples of a recording, and what they are.
     Samples(Block, SampleKind),
+    /// What a recording's reader has to tell.
+    Note(Note),
     /// The device went away, in words; it is waited for.
     Gone(String),
     /// It is there again.

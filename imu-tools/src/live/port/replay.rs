@@ -37,7 +37,11 @@ fn play(
     let mut start = None;
     loop {
         let mut block = Block::default();
-        match source.next_block(&mut block) {
+        let more = source.next_block(&mut block);
+        for note in source.take_notes() {
+            to.send(Arrival::Note(note)).ok()?;
+        }
+        match more {
             Err(error) => return Some(Err(error)),
             Ok(false) => return Some(Ok(())),
             Ok(true) if speed > 0.0 => {

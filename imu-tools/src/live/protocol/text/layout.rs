@@ -73,6 +73,12 @@ impl Layout {
         Some(Self { width: Some(names.len().max(layout.columns.len())), ..layout })
     }
 
+    /// Whether a header told the same; a layout that has seen rows knows more.
+    pub fn tells_as(&self, other: &Self) -> bool {
+        let told = |layout: &Self| Self { dialect: None, ..layout.clone() };
+        told(self) == told(other)
+    }
+
     fn new(found: Columns, options: &ReadOptions) -> Result<Self, String> {
         let time = found.time.unless(options.time_unit)?;
         let rate = found.rate.unless(options.gyro_unit)?;

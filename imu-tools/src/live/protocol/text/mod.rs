@@ -103,7 +103,7 @@ impl Text {
     }
 
     fn learn(&mut self, layout: Layout, from: &str) {
-        if self.layout.as_ref() != Some(&layout) {
+        if !self.layout.as_ref().is_some_and(|known| known.tells_as(&layout)) {
             self.learnt = Some(format!("{from}: {layout}"));
             self.clock = Clock::new(layout.time);
             self.layout = Some(layout);

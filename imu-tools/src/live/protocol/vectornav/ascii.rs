@@ -20,6 +20,8 @@ impl Wire for Ascii {
 
     fn check(&self, bytes: &[u8]) -> Check {
         const START: &[u8] = b"$VN";
+        // More may be at hand, or not: that must make no difference.
+        let bytes = bytes.get(..Self::LONGEST).unwrap_or(bytes);
         if !START.starts_with(bytes) && !bytes.starts_with(START) {
             return not_before(b'$', bytes);
         }
@@ -138,6 +140,7 @@ pub fn encode(message: &Message, bytes: &mut Vec<u8>) {
 mod tests {
     use super::*;
     use crate::live::protocol::{Protocol, tests};
+    use crate::recording::ReadOptions;
 
     /// Lines of devices as quoted in VectorNav's own library and in users' programs.
     #[test]
@@ -155,6 +158,22 @@ mod tests {
         assert_eq!(imu.celsius, Some(20.7));
         assert_eq!(first.accelerometer, Some([-1.258, -0.1, -9.701]));
         assert_eq!(second.gyroscope, Some([-0.002081, -0.001151, 0.002113]));
+    }
+
+    /// A line is as long however much of what follows it is at hand.
+    #[test]
+    fn a_line_is_no_longer_in_a_piece_than_in_many() {
+        for (padding, wanted) in [(300, 1), (303, 1), (304, 0), (330, 0)] {
+            let said = format!("VNGYR,{}1,2,3", "0".repeat(padding));
+            let sum = said.bytes().fold(0, |sum, byte| sum ^ byte);
+            let line = format!("${said}*{sum:02X}\r\n");
+            for piece in [1, 100, line.len()] {
+                let options = ReadOptions::default();
+                let protocol = Protocol::VectorNavAscii;
+                let messages = tests::in_pieces(protocol, &options, line.as_bytes(), piece);
+                assert_eq!(messages.len(), wanted, "{padding} {piece}");
+            }
+        }
     }
 
     /// UM004, register 80, its numbers with the checksum of an asynchronous line.
