@@ -103,6 +103,7 @@ fn main() {
         stalls_s: 30.0,
         lost: 0.0,
         source: Source::Ticks,
+        ticks_hz: 1_000_000,
     };
     println!("error of stamps in % of a period\n");
     println!(

@@ -29,6 +29,8 @@ pub struct Line {
     pub lost: f64,
     /// What messages carry.
     pub source: Source,
+    /// Ticks a second, where they carry those.
+    pub ticks_hz: u64,
 }
 
 /// A room that warms up and cools down: one period, s.
@@ -84,7 +86,7 @@ impl Line {
         };
         // Any number of hours after the host was started.
         let epoch_ns = 4_000_000_000_000_i64;
-        let mut clock = Clock::new(None);
+        let mut clock = Clock::default();
         let mut seen = Seen { settle_s, ..Seen::default() };
         let mut waiting = VecDeque::new();
         let mut stall = (0.0, -1.0);
@@ -119,8 +121,8 @@ impl Line {
             let mut message = Message::default();
             match self.source {
                 Source::Ticks => {
-                    let value = (x * 1e6).round() as u64 + 4_000_000_000;
-                    let (per_second, wraps_at) = (1_000_000, Some(1 << 32));
+                    let value = (x * self.ticks_hz as f64).round() as u64 + 4_000_000_000;
+                    let (per_second, wraps_at) = (self.ticks_hz, Some(1 << 32));
                     message.ticks = Some(Ticks { value: value % (1 << 32), per_second, wraps_at });
                 }
                 Source::Count => {
@@ -210,6 +212,7 @@ mod tests {
         stalls_s: 30.0,
         lost: 0.0,
         source: Source::Ticks,
+        ticks_hz: 1_000_000,
     };
 
     /// What is asked for. `examples/clock_recovery.rs` finds 0.2 to 0.4 % (rms) at this clock error; the
@@ -241,6 +244,29 @@ mod tests {
         let outcome = Line { lost: 1e-4, source: Source::Arrival, ..LINE }.run(3, 60.0, 600.0);
         assert!(!outcome.status.lost_is_certain);
         assert!(outcome.lost.0 > 0 && outcome.lost.1 <= outcome.lost.0 + 1, "{outcome:?}");
+    }
+
+    /// Stamps of a table have digits: milliseconds, hundredths of a second.
+    #[test]
+    fn ticks_that_are_no_part_of_a_period() {
+        for (rate_hz, ticks_hz) in [(30.0, 1000), (400.0, 1000), (1600.0, 1000), (200.0, 100)] {
+            let line = Line { rate_hz, ticks_hz, ..LINE };
+            let outcome = line.run(5, 120.0, 300.0);
+            assert_eq!((outcome.lost, outcome.status.source), ((0, 0), Source::Ticks), "{rate_hz}");
+            assert!(outcome.rate_z.abs() < 5.0, "{outcome:?}");
+            // Rounding is even over a tick, 0.29 rms, and the stamps' line follows it by 1/128.
+            let ticks = ticks_hz as f64;
+            assert!(outcome.error_s * ticks < 0.1, "{rate_hz}: {}", outcome.error_s * ticks);
+            assert!(outcome.spacing_s * ticks < 0.29 / 100.0, "{outcome:?}");
+            // What is lost is found as far as ticks can tell it.
+            let outcome = Line { lost: 0.01, ..line }.run(6, 120.0, 300.0);
+            let fine = ticks >= 2.0 * rate_hz;
+            assert_eq!(outcome.status.lost_is_certain, fine, "{rate_hz}");
+            if fine {
+                let (gaps, found) = outcome.gaps;
+                assert_eq!((found, outcome.false_gaps), (gaps, 0), "{rate_hz}: {outcome:?}");
+            }
+        }
     }
 
     #[test]

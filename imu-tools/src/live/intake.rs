@@ -82,7 +82,7 @@ impl Intake {
             Some(protocol) => State::Known(Decoder::new(protocol, options)?),
             None => State::Unknown { first: Vec::new(), pieces: Vec::new(), tried: 0 },
         };
-        let clock = Clock::new(None);
+        let clock = Clock::default();
         Ok(Self { name: name.to_owned(), options: options.clone(), state, clock, latest_ns: 0 })
     }
 

@@ -8,10 +8,8 @@
 //! bends: the bend that lets the curve lie highest is found by golden section, each step a hull. One
 //! fit of n points costs 25 n steps; `docs/live-clock.md` says what it achieves.
 
-use serde::{Deserialize, Serialize};
-
 /// The earliest arrival of a second or so.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Point {
     /// Sensor time, s.
     pub t: f64,
@@ -22,7 +20,7 @@ pub(super) struct Point {
 }
 
 /// The curve at its end, where the last point is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Curve {
     /// Where the last point is, s.
     pub t: f64,

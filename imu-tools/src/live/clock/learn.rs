@@ -5,7 +5,7 @@ use super::track::{Start, Track};
 use crate::live::Message;
 
 /// Two seconds of bursts show a rate to this part, stalls included. What is known from elsewhere
-/// (ticks in a second, the stretch before, a nominal rate) is better if it is not further off.
+/// (ticks in a second, the stretch before) is better if it is not further off.
 const KNOWN: f64 = 4e-3;
 
 /// And only if it was seen for so long, ns, in so many bursts: what is read faster had waited for its
@@ -18,6 +18,9 @@ const FEWEST_READINGS: usize = 4;
 
 /// A counter that got so far ahead of the host, ns, was set, or began anew.
 const AHEAD_NS: f64 = 1e9;
+
+/// This part of the steps is as good as all.
+const NEARLY_ALL: f64 = 0.9;
 
 /// Whether a message continues those that are held back: its counter goes on, and not faster than
 /// time.
@@ -34,16 +37,12 @@ pub(super) fn goes_on(held: &[(i64, Message)], arrival_ns: i64, message: &Messag
 }
 
 /// The track on which the messages lie; `None` where there are none.
-pub(super) fn from(
-    held: &[(i64, Message)],
-    before: Option<&Track>,
-    nominal_rate: Option<f64>,
-) -> Option<Track> {
+pub(super) fn from(held: &[(i64, Message)], before: Option<&Track>) -> Option<Track> {
     let (origin_ns, first) = held.first()?;
     let source = source(held);
     let steps = steps(held, source);
-    let stride = median(steps.iter().flatten().copied()).unwrap_or(1).max(1);
-    let passed = steps.iter().map(|step| step.unwrap_or(stride) as f64);
+    let stride = stride(&steps, source);
+    let passed = steps.iter().map(|step| step.map_or(stride, |step| step as f64));
     let points: Vec<(f64, f64)> = held
         .iter()
         .zip(std::iter::once(0.0).chain(passed).scan(0.0, |units, step| {
@@ -56,8 +55,7 @@ pub(super) fn from(
     let tick_ns = ticks.map(|t| 1e9 / t.per_second.max(1) as f64);
     let tick_ns = tick_ns.filter(|_| source == Source::Ticks);
     let known = before.filter(|b| b.source() == source).map(Track::unit_ns);
-    let nominal = nominal_rate.map(|rate| 1e9 / (rate * stride as f64));
-    let known = known.or(tick_ns).or(nominal);
+    let known = known.or(tick_ns);
     let ends = ends_of_bursts(&points);
     let measured = slope(&ends);
     let seen_ns = held.last().map_or(0, |(last_ns, _)| last_ns.saturating_sub(*origin_ns));
@@ -68,7 +66,7 @@ pub(super) fn from(
         }
         (Some(known), _) => known,
         (None, Some(measured)) => measured,
-        (None, None) => 1e9 / stride as f64,
+        (None, None) => 1e9 / stride,
     };
     let earliest =
         points.iter().map(|(units, at)| at - units * unit_ns).fold(f64::INFINITY, f64::min);
@@ -105,6 +103,23 @@ fn steps(held: &[(i64, Message)], source: Source) -> Vec<Option<u64>> {
         before.zip(now).map(|(before, now)| now.since(before).unwrap_or(0))
     };
     readings().zip(readings().skip(1)).map(step).collect()
+}
+
+/// Units from a message to the next: the median or, of ticks, which may be coarse, the mean of those that
+/// rounding and half a period explain.
+fn stride(steps: &[Option<u64>], source: Source) -> f64 {
+    let steps = || steps.iter().flatten().copied();
+    // Two messages of one instant have no step between them.
+    let usual = median(steps()).filter(|step| *step > 0);
+    let usual = usual.or(median(steps().filter(|step| *step > 0))).unwrap_or(1);
+    let near = || steps().filter(|step| step.abs_diff(usual) <= (usual / 2).max(1));
+    let same = near().filter(|step| *step == usual).count();
+    // Where nearly all are one tick, the others are late, or miss a message.
+    if source != Source::Ticks || (usual == 1 && same as f64 >= NEARLY_ALL * near().count() as f64)
+    {
+        return usual as f64;
+    }
+    near().map(|step| step as f64).sum::<f64>() / near().count() as f64
 }
 
 /// The latest message of each burst, which waited least.

@@ -13,7 +13,7 @@
 //!
 //! ```
 //! use imu_tools::live::{Message, Ticks, clock::Clock};
-//! let mut clock = Clock::new(None);
+//! let mut clock = Clock::default();
 //! let mut stamps = Vec::new();
 //! for i in 0..1000_u64 {
 //!     // 200 Hz, read in bursts every 16 ms; the sensor's clock counts microseconds.
@@ -32,8 +32,6 @@ mod learn;
 mod reading;
 mod strip;
 mod track;
-
-use serde::{Deserialize, Serialize};
 
 pub use reading::Source;
 use track::{Next, Track};
@@ -64,7 +62,7 @@ pub struct Taken {
 }
 
 /// How a sensor's clock is doing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClockStatus {
     /// Messages in a second of the host's clock, lost ones included; 0 before the first stamp.
     pub rate_hz: f64,
@@ -85,12 +83,10 @@ pub struct ClockStatus {
 }
 
 /// Stamps messages. Its memory does not grow: 600 points of a curve, and at the start of a stretch
-/// at most 4096 messages. A copy of it that was written and read back lacks only the latter.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+/// at most 4096 messages.
+#[derive(Clone, Debug, Default)]
 pub struct Clock {
-    nominal_rate: Option<f64>,
     /// Arrivals and messages of a stretch whose rate and phase are not known yet.
-    #[serde(skip)]
     held: Vec<(i64, Message)>,
     track: Option<Track>,
     /// The stretch before, for its rate.
@@ -104,7 +100,7 @@ pub struct Clock {
 }
 
 /// Mean and sum of squared distances from it (Welford 1962).
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Spread {
     count: u64,
     mean: f64,
@@ -121,14 +117,6 @@ impl Spread {
 }
 
 impl Clock {
-    /// A clock that has seen nothing. `nominal_rate` is what the sensor's rate should be, Hz; what
-    /// is measured goes before it where they differ by more than can be measured in two seconds.
-    #[must_use]
-    pub fn new(nominal_rate: Option<f64>) -> Self {
-        let nominal_rate = nominal_rate.filter(|r| r.is_finite() && *r > 0.0);
-        Self { nominal_rate, ..Self::default() }
-    }
-
     /// Takes a message whose last byte was in the chunk that was read at `arrival_ns` of a monotonic
     /// clock. Hands on every message whose time is known by now, in order.
     pub fn take(
@@ -171,14 +159,6 @@ impl Clock {
         }
     }
 
-    /// This clock was read from a file, by a program whose time has another epoch: nothing connects the
-    /// next message with those before, and stamps need not be later than those of the other program.
-    pub fn resumed(&mut self) {
-        self.held.clear();
-        self.before = self.track.take().or(self.before.take());
-        self.last_stamp = None;
-    }
-
     /// What is known by now.
     #[must_use]
     pub fn status(&self) -> ClockStatus {
@@ -203,7 +183,7 @@ impl Clock {
         // The memory is needed for a few seconds of a run of days: it is given back.
         let held = std::mem::take(&mut self.held);
         let mut messages = held.as_slice();
-        while let Some(mut track) = learn::from(messages, self.before.as_ref(), self.nominal_rate) {
+        while let Some(mut track) = learn::from(messages, self.before.as_ref()) {
             let first = self.join(&mut track);
             self.track = Some(track);
             let mut next = Some(first);

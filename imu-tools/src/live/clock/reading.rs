@@ -1,11 +1,9 @@
 //! What places a message in time: the sensor's ticks, its count, or that it is the next one.
 
-use serde::{Deserialize, Serialize};
-
 use crate::live::Message;
 
 /// What sample times come from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Source {
     /// The sensor's clock.
     Ticks,
@@ -17,7 +15,7 @@ pub enum Source {
 }
 
 /// A counter's reading.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Reading {
     pub value: u64,
     pub wraps_at: Option<u64>,

@@ -1,7 +1,5 @@
 //! One stretch of messages on one line: where each belongs, and how the line follows the arrivals.
 
-use serde::{Deserialize, Serialize};
-
 use super::envelope::{self, Curve, Point};
 use super::reading::{Reading, Source};
 use super::strip;
@@ -45,6 +43,18 @@ const SET_NS: f64 = 1e9;
 /// With fewer points the curve does not show a lost message.
 const SETTLED: f64 = 60.0;
 
+/// The part of a tick's distance from the even line of messages by which that line follows: a second or so.
+const FOLLOWED: f64 = 1.0 / 128.0;
+
+/// Messages after which their own number tells best how many units lie between two.
+const COUNTED: u64 = 64;
+
+/// How far a reading may be from the truth, ticks: it is a whole number.
+const ROUNDING: f64 = 0.5;
+
+/// With less than so many times that between messages, one that is missing cannot be told from it.
+const FINE: f64 = 4.0;
+
 /// How far the line may be too low, in periods, and how late the earliest of a second may be read, ns.
 const UNSURE: f64 = 0.05;
 const UNSURE_NS: f64 = 50e3;
@@ -70,8 +80,8 @@ pub(super) struct Start {
     pub source: Source,
     /// Arrival of its first message, ns.
     pub origin_ns: i64,
-    /// Units from a message to the next.
-    pub stride: u64,
+    /// Units from a message to the next, on average.
+    pub stride: f64,
     /// Host time of a unit.
     pub unit_ns: f64,
     /// What the sensor says that it is.
@@ -82,11 +92,12 @@ pub(super) struct Start {
 }
 
 /// The line `origin + unit·units + offset`, whose offset drifts, and what it is led by.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(super) struct Track {
     source: Source,
     origin_ns: i64,
-    stride: u64,
+    /// Units from a message to the next, as the first of them showed: no whole number where ticks are coarse.
+    stride: f64,
     unit_ns: f64,
     tick_ns: Option<f64>,
     reading: Option<Reading>,
@@ -96,6 +107,11 @@ pub(super) struct Track {
     ahead_ns: f64,
     /// Units passed, up to the last message.
     units: u64,
+    /// Messages among them, lost ones counted.
+    messages: u64,
+    /// How far the last tick was from the even line of messages, ticks: ticks of a millisecond are 2 and 3
+    /// apart at 400 Hz.
+    uneven: f64,
     last_arrival_ns: i64,
     /// Offset at `since` (sensor time, s) in ns, and its drift, ns/s.
     since: f64,
@@ -133,6 +149,8 @@ impl Track {
             unread: 0,
             ahead_ns: UNKNOWN_NS,
             units: 0,
+            messages: 0,
+            uneven: 0.0,
             last_arrival_ns: start.origin_ns,
             since: 0.0,
             offset: start.offset_ns,
@@ -162,16 +180,37 @@ impl Track {
         self.unit_ns * (1.0 + 1e-9 * self.curve.slope)
     }
 
+    /// Units from a message to the next, on average, lost ones counted.
+    fn mean_stride(&self) -> f64 {
+        match self.messages {
+            ..COUNTED => self.stride,
+            messages => self.units as f64 / messages as f64,
+        }
+    }
+
+    /// Units from a message to the next, as one reading can tell them.
+    fn step(&self) -> u64 {
+        self.stride.round() as u64
+    }
+
+    /// How far a reading may be from the even line of messages, units.
+    fn rounding(&self) -> f64 {
+        if self.source == Source::Ticks { ROUNDING } else { 0.0 }
+    }
+
     /// Host time from a message to the next, ns.
     pub fn period_ns(&self) -> f64 {
-        self.stride as f64 * self.unit_ns()
+        self.mean_stride() * self.unit_ns()
     }
 
     /// Messages a second, and the standard deviation of that.
     pub fn rate(&self) -> (f64, f64) {
         let rate = 1e9 / self.period_ns();
         let Curve { slope_sd, points, .. } = self.curve;
-        (rate, if points > 2.0 { 1e-9 * rate * slope_sd } else { f64::INFINITY })
+        // The first and the last reading are rounded, each evenly.
+        let rounded = self.rounding() * (2.0_f64 / 3.0).sqrt() / self.units.max(1) as f64;
+        let sd = (1e-9 * slope_sd).hypot(rounded);
+        (rate, if points > 2.0 { rate * sd } else { f64::INFINITY })
     }
 
     /// How much faster than the host's the sensor's clock runs, in millionths.
@@ -186,8 +225,13 @@ impl Track {
     }
 
     /// Sensor time of a number of units, s.
-    fn seconds(&self, units: u64) -> f64 {
-        units as f64 * self.unit_ns * 1e-9
+    fn seconds(&self, units: f64) -> f64 {
+        units * self.unit_ns * 1e-9
+    }
+
+    /// Units up to the last message, less the rounding of its tick.
+    fn position(&self) -> f64 {
+        self.units as f64 - self.uneven
     }
 
     /// The line's offset, ns, at a sensor time in s.
@@ -196,26 +240,26 @@ impl Track {
     }
 
     /// Arrival minus line, ns.
-    fn late(&self, arrival_ns: i64, units: u64) -> f64 {
-        let line = units as f64 * self.unit_ns + self.offset_at(self.seconds(units));
+    fn late(&self, arrival_ns: i64, units: f64) -> f64 {
+        let line = units * self.unit_ns + self.offset_at(self.seconds(units));
         arrival_ns.saturating_sub(self.origin_ns) as f64 - line
     }
 
     /// The stamp of the last message.
     pub fn stamp(&self) -> i64 {
-        let line = self.units as f64 * self.unit_ns + self.offset_at(self.seconds(self.units));
+        let units = self.position();
+        let line = units * self.unit_ns + self.offset_at(self.seconds(units));
         self.origin_ns.saturating_add(line.round() as i64)
     }
 
     /// Host time that the sensor took for a message, ns.
     pub fn interval_ns(&self, next: &Next) -> f64 {
         let unit_ns = self.unit_ns * (1.0 + 1e-9 * self.drift);
-        let units = if next.restart || next.units == 0 {
-            self.stride as f64
-        } else {
-            next.units as f64 / (next.lost + 1) as f64
-        };
-        units * unit_ns
+        let stride = self.mean_stride();
+        let units = next.units as f64 / next.lost.saturating_add(1) as f64;
+        // Two readings are rounded: what they can explain is no other interval.
+        let same = next.restart || next.units == 0 || (units - stride).abs() <= 2.0 * ROUNDING;
+        unit_ns * if same { stride } else { units }
     }
 
     /// The port was opened again: the next message must show that the sensor went on.
@@ -229,15 +273,15 @@ impl Track {
             return None;
         }
         let silence = arrival_ns.saturating_sub(self.last_arrival_ns);
-        let mut units = self.stride;
+        let mut units = self.step();
         let now = Reading::of(self.source, message);
         if let (Some(now), Some(before)) = (now, self.reading) {
             units = now.since(before)?.saturating_sub(self.unread);
             if let Some(wrap) = now.wraps_at
                 && silence >= SILENCE_NS
-                && units != self.stride
+                && units != self.step()
             {
-                let late = self.late(arrival_ns, self.units.saturating_add(units));
+                let late = self.late(arrival_ns, self.units.saturating_add(units) as f64);
                 let round = (late / (wrap as f64 * self.unit_ns) + 0.25).floor().max(0.0);
                 units = units.saturating_add((round as u64).saturating_mul(wrap));
             }
@@ -245,20 +289,34 @@ impl Track {
             return None;
         }
         units = units.saturating_add(std::mem::take(&mut self.passed_over));
-        let late = self.late(arrival_ns, self.units.saturating_add(units));
+        let late = self.late(arrival_ns, self.units.saturating_add(units) as f64);
         if self.source != Source::Arrival && late < -self.ahead_ns - 1e-4 * silence as f64 {
             return None;
         }
         if std::mem::take(&mut self.reopened) && late > SET_NS + 1e-4 * silence as f64 {
             return None;
         }
-        self.unread = if now.is_some() { 0 } else { self.unread.saturating_add(self.stride) };
+        self.unread = if now.is_some() { 0 } else { self.unread.saturating_add(self.step()) };
         self.reading = now.or(self.reading);
-        let strides = units as f64 / self.stride as f64;
-        let lost = (strides.round() as u64).saturating_sub(1);
-        // Half-way between two numbers nothing is certain.
-        let certain = self.source != Source::Arrival && (strides - strides.round()).abs() < 0.25;
+        let (lost, certain) = self.lost_among(units);
         Some(Next { units, lost, certain: certain || lost == 0, restart: false })
+    }
+
+    /// How many messages are missing where so many units passed up to the next, and whether that is certain.
+    fn lost_among(&mut self, units: u64) -> (u64, bool) {
+        let (stride, rounding) = (self.stride, self.rounding());
+        let beyond = units as f64 + self.uneven - stride;
+        let fine = stride >= FINE * rounding;
+        let explained = if fine { 0.0 } else { rounding };
+        let lost = ((beyond - explained) / stride).round().max(0.0);
+        let left = beyond - lost * stride;
+        // The mean of the first, so that it does not matter how the very first was rounded.
+        let follow = (1.0 / (self.messages as f64 + 1.0)).max(FOLLOWED);
+        self.uneven = (1.0 - follow) * left.clamp(-2.0 * rounding, 2.0 * rounding);
+        self.messages = self.messages.saturating_add(1).saturating_add(lost as u64);
+        // Half-way between two numbers nothing is certain.
+        let sure = fine && left.abs() < 0.25 * stride + 0.5 * rounding;
+        (lost as u64, sure && self.source != Source::Arrival)
     }
 
     /// Passes on to a message, and learns from its arrival.
@@ -267,10 +325,10 @@ impl Track {
         if arrival_ns != self.last_arrival_ns && self.bursts.len() < MOST_BURSTS {
             self.bursts.push(std::mem::take(&mut self.burst));
         }
-        self.burst = self.burst.saturating_add(units / self.stride.max(1));
+        self.burst = self.burst.saturating_add((units as f64 / self.stride).round() as u64);
         self.last_arrival_ns = arrival_ns;
-        let t = self.seconds(self.units);
-        let late = self.late(arrival_ns, self.units);
+        let t = self.seconds(self.position());
+        let late = self.late(arrival_ns, self.position());
         if self.block_messages == 0 {
             self.block_since = t;
             self.block_since_ns = arrival_ns;
