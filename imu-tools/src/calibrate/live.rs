@@ -24,8 +24,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::sensor::Pipeline;
-use super::temperature::Thermometer;
-use super::{Calibration, Options, SensorKind, SensorNoise, TemperatureRange, judge};
+use super::{Calibration, Options, SensorKind, SensorNoise, judge};
 use crate::error::Error;
 use crate::recording::{Block, Sample};
 
@@ -36,7 +35,6 @@ pub struct Running {
     options: Options,
     gyroscope: Counted,
     accelerometer: Counted,
-    thermometer: Thermometer,
 }
 
 /// A pipeline, and what went in.
@@ -85,13 +83,11 @@ impl Running {
             options: *options,
             gyroscope: Counted::new(SensorKind::Gyroscope, options),
             accelerometer: Counted::new(SensorKind::Accelerometer, options),
-            thermometer: Thermometer::default(),
         }
     }
 
     /// Takes the next samples.
     pub fn push(&mut self, block: &Block) {
-        self.thermometer.push(&block.temperature);
         self.gyroscope.push(&block.gyroscope);
         self.accelerometer.push(&block.accelerometer);
     }
@@ -131,13 +127,6 @@ impl Running {
         [self.gyroscope.last_ns, self.accelerometer.last_ns]
     }
 
-    /// The rate of each sensor by its latest stamps, Hz, gyroscope's first; `None` as long as fewer than
-    /// 4096 samples came.
-    #[must_use]
-    pub fn rate_hz(&self) -> [Option<f64>; 2] {
-        [self.gyroscope.pipeline.rate_hz(), self.accelerometer.pipeline.rate_hz()]
-    }
-
     /// Whether a sensor is being moved, by its last second; `None` in the first minutes, as long as it is
     /// not known what is usual of it.
     #[must_use]
@@ -147,12 +136,6 @@ impl Running {
             (None, None) => None,
             (g, a) => Some(g.unwrap_or(false) || a.unwrap_or(false)),
         }
-    }
-
-    /// What a thermometer said.
-    #[must_use]
-    pub fn temperature(&self) -> Option<TemperatureRange> {
-        self.thermometer.range()
     }
 
     /// The whole state.
@@ -176,7 +159,6 @@ impl Running {
             options: *options,
             gyroscope: kept.gyroscope.with_options(options),
             accelerometer: kept.accelerometer.with_options(options),
-            thermometer: kept.thermometer,
         })
     }
 }

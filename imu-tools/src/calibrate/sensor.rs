@@ -108,11 +108,6 @@ impl Pipeline {
         self.seen.stillness.is_disturbed()
     }
 
-    /// Its rate by the latest stamps, Hz; `None` as long as it is not known.
-    pub(super) fn rate_hz(&self) -> Option<f64> {
-        self.timeline.rate_hz()
-    }
-
     /// Time between samples, near enough to say how many make a second.
     fn rough_period_s(&self) -> f64 {
         let span = self.latest_ns.saturating_sub(self.first_ns.unwrap_or(self.latest_ns));

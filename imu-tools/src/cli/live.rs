@@ -10,7 +10,7 @@ use super::reading::Reading;
 use super::results::Results;
 use crate::calibrate::Options;
 use crate::error::Error;
-use crate::live::checkpoint;
+use crate::live::checkpoint::{self, Place};
 use crate::live::goal::Goal;
 use crate::live::intake::{self, Intake};
 use crate::live::port::{self, Address, Expected, How};
@@ -135,6 +135,7 @@ impl Live {
             let wanted = self.resume || !address.comes_again();
             wanted.then(|| PathBuf::from(CHECKPOINT))
         });
+        let place = checkpoint.as_deref().map(Place::take).transpose()?;
         let session = self.session(&address, &options, checkpoint.as_deref())?;
         let how = How {
             baud: self.baud,
@@ -155,8 +156,7 @@ impl Live {
         let port = port::open(&address, &how, &expected)?;
         output::heed_signals();
         let keep = Keep {
-            checkpoint: checkpoint
-                .map(|path| (path, Duration::from_secs_f64(self.checkpoint_every))),
+            checkpoint: place.map(|place| (place, Duration::from_secs_f64(self.checkpoint_every))),
             record: self
                 .record
                 .as_deref()

@@ -3,22 +3,24 @@
 //! | bytes | what |
 //! |---|---|
 //! | 8 | `IMULIVE` and a zero |
-//! | 2 | version of what follows (2), little-endian |
+//! | 2 | version of what follows (3), little-endian |
 //! | 8 | length of the payload, little-endian |
 //! | … | the payload |
 //! | 4 | CRC-32 (IEEE 802.3) of all bytes before, little-endian |
 //!
 //! It is written to `NAME.part` and flushed to the disk; then `NAME` becomes `NAME.previous` and
-//! `NAME.part` becomes `NAME`. Whenever the power goes, one of them is whole.
+//! `NAME.part` becomes `NAME`. Whenever the power goes, one of them is whole. A session keeps the file that it
+//! wrote last locked, before the first one an empty `NAME.part`: two sessions of one name would each lose what
+//! the other keeps.
 
-use std::fs::{self, File};
-use std::io::{self, Write as _};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 
 const MAGIC: &[u8; 8] = b"IMULIVE\0";
-const VERSION: u16 = 2;
+const VERSION: u16 = 3;
 const HEADER: usize = 18;
 const CRC: usize = 4;
 
@@ -46,28 +48,106 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
     name.into()
 }
 
-/// Puts a checkpoint in the place of the one at `path`, which is kept as `.previous`.
-///
-/// # Errors
-/// When the disk is full or the folder cannot be written; then the one at `path` is still there.
-pub fn write(path: &Path, payload: &[u8]) -> Result<(), Error> {
-    let mut bytes = Vec::with_capacity(HEADER + payload.len() + CRC);
-    bytes.extend_from_slice(MAGIC);
-    bytes.extend_from_slice(&VERSION.to_le_bytes());
-    bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
-    bytes.extend_from_slice(payload);
-    bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
-    let part = beside(path, ".part");
-    let written = (|| {
-        let mut file = File::create(&part)?;
-        file.write_all(&bytes)?;
-        file.sync_all()?;
-        if path.exists() {
-            fs::rename(path, beside(path, ".previous"))?;
+/// Where the checkpoints of one session are kept.
+#[derive(Debug)]
+pub struct Place {
+    path: PathBuf,
+    /// The file that is locked, and whether it still is `NAME.part`.
+    locked: File,
+    is_part: bool,
+}
+
+impl Place {
+    /// Takes `path` for a session, and completes what a power cut may have left undone there.
+    ///
+    /// # Errors
+    /// When another session keeps its checkpoints there, or the folder cannot be written.
+    pub fn take(path: &Path) -> Result<Self, Error> {
+        let refused = |source| Error::io("write the checkpoint", path, source);
+        let (part, previous) = (beside(path, ".part"), beside(path, ".previous"));
+        if let Ok(latest) = File::open(path) {
+            lock(&latest, path)?;
+        } else if previous.exists() && one(&part).is_ok() {
+            fs::rename(&part, path).map_err(refused)?;
         }
-        fs::rename(&part, path)
-    })();
-    written.map_err(|source| Error::io("write the checkpoint", path, source))
+        let locked = open(&part).map_err(refused)?;
+        lock(&locked, path)?;
+        Ok(Self { path: path.to_owned(), locked, is_part: true })
+    }
+
+    /// Puts a checkpoint in the place of the one before, which is kept as `.previous`.
+    ///
+    /// # Errors
+    /// When the disk is full or the folder cannot be written; then the one before is still there.
+    pub fn write(&mut self, payload: &[u8]) -> Result<(), Error> {
+        let mut bytes = Vec::with_capacity(HEADER + payload.len() + CRC);
+        bytes.extend_from_slice(MAGIC);
+        bytes.extend_from_slice(&VERSION.to_le_bytes());
+        bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
+        bytes.extend_from_slice(payload);
+        bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
+        let refused = |source| Error::io("write the checkpoint", &self.path, source);
+        let part = beside(&self.path, ".part");
+        if !self.is_part {
+            let next = open(&part).map_err(refused)?;
+            lock(&next, &self.path)?;
+            (self.locked, self.is_part) = (next, true);
+        }
+        self.put(&part, &bytes)
+            .map_err(|source| Error::io("write the checkpoint", &self.path, source))
+    }
+
+    fn put(&mut self, part: &Path, bytes: &[u8]) -> io::Result<()> {
+        self.locked.set_len(0)?;
+        self.locked.rewind()?;
+        self.locked.write_all(bytes)?;
+        self.locked.sync_all()?;
+        if self.path.exists() {
+            fs::rename(&self.path, beside(&self.path, ".previous"))?;
+        }
+        fs::rename(part, &self.path)?;
+        self.is_part = false;
+        sync_folder(&self.path)
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let part = beside(&self.path, ".part");
+        // Empty or half a checkpoint: of no use to anybody.
+        if self.is_part && one(&part).is_err() {
+            let _ = fs::remove_file(part);
+        }
+    }
+}
+
+/// A file that is written from its beginning once it is locked.
+fn open(part: &Path) -> io::Result<File> {
+    File::options().write(true).create(true).truncate(false).open(part)
+}
+
+/// Keeps other sessions away. Where files cannot be locked, nobody is.
+fn lock(file: &File, path: &Path) -> Result<(), Error> {
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(Error::data(format!(
+            "another imu live keeps its checkpoints in {}: name another with --checkpoint",
+            path.display()
+        ))),
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(()),
+    }
+}
+
+/// Brings the names of a folder to the disk.
+#[cfg(unix)]
+fn sync_folder(path: &Path) -> io::Result<()> {
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    File::open(folder.unwrap_or(Path::new(".")))?.sync_all()
+}
+
+/// Other systems open no folder.
+#[cfg(not(unix))]
+fn sync_folder(_: &Path) -> io::Result<()> {
+    Ok(())
 }
 
 /// The latest checkpoint at `path` that is whole; `None` where there never was one.
@@ -147,6 +227,11 @@ fn one(path: &Path) -> Result<Vec<u8>, Refused> {
 mod tests {
     use super::*;
 
+    fn write(path: &Path, payloads: &[&[u8]]) {
+        let mut place = Place::take(path).unwrap();
+        payloads.iter().for_each(|payload| place.write(payload).unwrap());
+    }
+
     fn payload(found: Option<Found>) -> (Vec<u8>, bool) {
         let found = found.unwrap();
         (found.payload, found.warning.is_some())
@@ -157,8 +242,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("c");
         assert_eq!(read(&path).unwrap(), None);
+        let mut place = Place::take(&path).unwrap();
         for text in [&b"one"[..], b"two", b""] {
-            write(&path, text).unwrap();
+            place.write(text).unwrap();
             assert_eq!(payload(read(&path).unwrap()), (text.to_vec(), false));
         }
         assert_eq!(one(&beside(&path, ".previous")).ok().unwrap(), b"two");
@@ -168,8 +254,7 @@ mod tests {
     fn whatever_is_damaged_the_one_before_is_taken_and_that_is_said() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("c");
-        write(&path, b"one").unwrap();
-        write(&path, b"two").unwrap();
+        write(&path, &[b"one", b"two"]);
         let whole = fs::read(&path).unwrap();
         for at in 0..whole.len() {
             let mut bytes = whole.clone();
@@ -188,20 +273,43 @@ mod tests {
     fn a_power_loss_between_the_renames_loses_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("c");
-        write(&path, b"one").unwrap();
+        write(&path, &[b"one"]);
         fs::rename(&path, beside(&path, ".previous")).unwrap();
         assert_eq!(payload(read(&path).unwrap()), (b"one".to_vec(), true));
-        write(&beside(&path, ".part"), b"two").unwrap();
+        write(&beside(&path, ".part"), &[b"two"]);
         assert_eq!(payload(read(&path).unwrap()), (b"two".to_vec(), false));
+        // Who goes on with it completes the renames before anything else is written.
+        let place = Place::take(&path).unwrap();
+        assert_eq!(one(&path).ok().unwrap(), b"two");
+        drop(place);
+        assert!(!beside(&path, ".part").exists());
+    }
+
+    #[test]
+    fn a_place_is_of_one_session_at_a_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("c");
+        let is_taken = || {
+            let error = Place::take(&path).unwrap_err().to_string();
+            error.starts_with("another imu live keeps its checkpoints in")
+        };
+        let mut place = Place::take(&path).unwrap();
+        assert!(is_taken(), "before the first checkpoint");
+        for _ in 0..3 {
+            place.write(b"one").unwrap();
+            assert!(is_taken());
+            assert_eq!(payload(read(&path).unwrap()), (b"one".to_vec(), false));
+        }
+        drop(place);
+        Place::take(&path).unwrap();
     }
 
     #[test]
     fn another_version_is_refused_and_not_taken_for_damage() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("c");
-        write(&path, b"one").unwrap();
-        write(&path, b"two").unwrap();
-        for version in [1, 3] {
+        write(&path, &[b"one", b"two"]);
+        for version in [2, 4] {
             let mut bytes = fs::read(&path).unwrap();
             bytes[8] = version;
             let end = bytes.len() - CRC;
@@ -209,7 +317,7 @@ mod tests {
             bytes[end..].copy_from_slice(&crc);
             fs::write(&path, &bytes).unwrap();
             let error = read(&path).unwrap_err().to_string();
-            let words = format!("another version of this program ({version}; this one reads 2)");
+            let words = format!("another version of this program ({version}; this one reads 3)");
             assert!(error.contains(&words), "{error}");
         }
     }

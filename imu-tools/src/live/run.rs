@@ -1,11 +1,10 @@
 //! The loop of a live session: what arrives goes into the calibration, the recording and the checkpoint;
 //! now and then it is shown.
 
-use std::path::PathBuf;
 use std::sync::mpsc::TryRecvError;
 use std::time::{Duration, Instant};
 
-use super::checkpoint;
+use super::checkpoint::Place;
 use super::goal::Goal;
 use super::link::Link;
 use super::port::{Arrival, Port};
@@ -106,8 +105,8 @@ pub enum Ended {
 /// What is kept of a session.
 #[derive(Default)]
 pub struct Keep {
-    /// The checkpoint's file, and the time between checkpoints.
-    pub checkpoint: Option<(PathBuf, Duration)>,
+    /// The checkpoint's place, and the time between checkpoints.
+    pub checkpoint: Option<(Place, Duration)>,
     /// The samples.
     pub record: Option<Box<dyn Sink>>,
     /// The bytes.
@@ -115,11 +114,11 @@ pub struct Keep {
 }
 
 impl Keep {
-    fn checkpoint(&self, session: &Session, ended: bool) -> Result<(), Error> {
-        match &self.checkpoint {
+    fn checkpoint(&mut self, session: &Session, ended: bool) -> Result<(), Error> {
+        match &mut self.checkpoint {
             // There is nothing to go on with.
             Some(_) if session.samples() == [0, 0] => Ok(()),
-            Some((path, _)) => checkpoint::write(path, &session.to_bytes(ended)?),
+            Some((place, _)) => place.write(&session.to_bytes(ended)?),
             None => Ok(()),
         }
     }
@@ -324,8 +323,11 @@ impl Live<'_> {
             }
             Key::Pause => self.session.pause(),
             Key::Mark => {
-                let number = self.session.mark();
-                face.say(&format!("mark {number} at {:.1} s", self.session.span_s()));
+                let at_s = self.session.span_s();
+                face.say(&match self.session.mark() {
+                    Some(number) => format!("mark {number} at {at_s:.1} s"),
+                    None => "not marked: there are as many marks as are kept".to_owned(),
+                });
             }
             Key::Quit => {}
         }

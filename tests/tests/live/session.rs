@@ -127,7 +127,7 @@ const OFTEN: [&str; 2] = ["--checkpoint-every", "50ms"];
 
 /// Waits until a file has so many bytes.
 fn wait_for(path: &Path, bytes: u64) {
-    while std::fs::metadata(path).map_or(0, |there| there.len()) < bytes {
+    while std::fs::metadata(path).map_or(true, |there| there.len() < bytes) {
         std::thread::sleep(Duration::from_millis(10));
     }
 }
@@ -265,9 +265,14 @@ fn what_cannot_be_is_one_sentence() {
         (&["live", "tcp://localhost"], 2, "write it as tcp://host:4000"),
         (&["live", text(&path), "--until", "0"], 2, "a part such as 10%"),
         (
-            &["live", text(&path), "--resume", "--checkpoint", "/no/such"],
+            &["live", text(&path), "--resume", "--checkpoint", text(&folder.path().join("c"))],
             1,
             "there is no checkpoint",
+        ),
+        (
+            &["live", text(&path), "--checkpoint", "/no/such"],
+            1,
+            "cannot write the checkpoint /no/such",
         ),
         (&["live", text(&path), "--record", "a.txt"], 2, "cannot tell the format"),
         (&["live", text(&path), "--record", "/no/such/a.bag"], 1, "no such file or folder"),
@@ -276,6 +281,23 @@ fn what_cannot_be_is_one_sentence() {
         assert_eq!((said.code, said.err.lines().count()), (code, 1), "{arguments:?}: {}", said.err);
         assert!(said.err.contains(words), "{}", said.err);
     }
+}
+
+#[test]
+fn two_sessions_do_not_share_a_checkpoint() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, checkpoint) = (recording(folder.path(), 2), folder.path().join("c"));
+    let mut first = start(&path, &checkpoint, &["--speed", "1"]);
+    wait_for(&folder.path().join("c.part"), 0);
+    for more in [&[][..], &["--fresh"], &["--resume"]] {
+        let second = said(&start(&path, &checkpoint, more).wait_with_output().unwrap());
+        assert_eq!(second.code, 1);
+        assert!(second.err.contains("another imu live keeps its checkpoints in"), "{}", second.err);
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    let third = said(&start(&path, &checkpoint, &[]).wait_with_output().unwrap());
+    assert_eq!(third.code, 0, "{}", third.err);
 }
 
 /// A session that took nothing leaves nothing to go on with.

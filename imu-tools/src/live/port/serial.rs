@@ -146,8 +146,10 @@ fn find_rate(path: &Path, expected: &Expected<'_>) -> Result<u32, Error> {
     for rate in RATES {
         let port = match connect(path, rate) {
             Ok(port) => port,
-            // Not every adapter has every rate.
-            Err(e) if e.kind() == io::ErrorKind::InvalidInput => continue,
+            // Not every adapter has every rate: the driver refuses it, or keeps another.
+            Err(e) if matches!(e.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Other) => {
+                continue;
+            }
             Err(e) => return Err(refusal(path, &e)),
         };
         let bytes = listen(&port);

@@ -171,11 +171,6 @@ impl Timeline {
         }
     }
 
-    /// The rate as the grid follows it, Hz; `None` as long as it is not known.
-    pub(crate) fn rate_hz(&self) -> Option<f64> {
-        self.grid.as_ref().map(|grid| 1e9 / grid.period())
-    }
-
     /// Places samples as long as each is where it belongs, as most are, without holding them back
     /// first. Returns those that are left.
     fn follow<'a>(&mut self, samples: &'a [Sample]) -> &'a [Sample] {
