@@ -121,9 +121,11 @@ impl Line {
             let mut message = Message::default();
             match self.source {
                 Source::Ticks => {
+                    // A text's times have digits, and are read as nanoseconds.
+                    let (per_second, grain) = (1_000_000_000, 1_000_000_000 / self.ticks_hz);
                     let value = (x * self.ticks_hz as f64).round() as u64 + 4_000_000_000;
-                    let (per_second, wraps_at) = (self.ticks_hz, Some(1 << 32));
-                    message.ticks = Some(Ticks { value: value % (1 << 32), per_second, wraps_at });
+                    let (value, wraps_at) = (value % (1 << 32) * grain, Some((1 << 32) * grain));
+                    message.ticks = Some(Ticks { value, per_second, wraps_at });
                 }
                 Source::Count => {
                     message.count = Some(Count { value: (k % 256) as u32, wraps_at: 256 });

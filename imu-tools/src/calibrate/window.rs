@@ -25,8 +25,7 @@ impl Window {
     /// Notes where the recording begins.
     pub(super) fn open(&mut self, block: &Block) {
         if self.first.is_none() {
-            let first = [block.gyroscope.first(), block.accelerometer.first()];
-            self.first = first.into_iter().flatten().map(|sample| sample.stamp_ns).min();
+            self.first = block.first_ns();
         }
     }
 

@@ -11,6 +11,8 @@ pub struct Link {
     pub learnt: Option<String>,
     /// Why nothing comes now, if so: the device was unplugged.
     pub gone: Option<String>,
+    /// The port is there, and for so long nothing came, s.
+    pub silent_s: Option<f64>,
     /// Bytes that came.
     pub bytes: u64,
     /// Bytes of them that were part of no valid frame.

@@ -26,6 +26,9 @@ const REST: u32 = 100;
 /// The goal is looked at whenever the record has grown by this part, whatever the time on the wall.
 const GROWTH: f64 = 1.02;
 
+/// Nothing came for so long: the user is told. Of a sensor that is merely slow, once.
+const SILENCE: Duration = Duration::from_secs(10);
+
 /// What became of bytes.
 #[derive(Debug)]
 pub enum Step {
@@ -189,9 +192,11 @@ impl Live<'_> {
     ) -> Result<Ended, Error> {
         let (mut shown, mut flushed, mut kept) = (Instant::now(), Instant::now(), Instant::now());
         let (mut between, mut look_at_s) = (face.every(), 0.0);
+        let mut heard = Heard { at: Instant::now(), patience: SILENCE };
         loop {
             match self.port.arrivals.try_recv() {
                 Ok(arrival) => {
+                    heard.note(&arrival, link, face);
                     if !self.arrive(arrival, face, link)? {
                         return Ok(Ended::Input);
                     }
@@ -203,6 +208,9 @@ impl Live<'_> {
             }
             if let Some(signal) = end_is_asked() {
                 return Ok(Ended::Signal(signal));
+            }
+            if self.decode.is_some() {
+                heard.look(link, face);
             }
             if flushed.elapsed() >= FLUSH {
                 self.keep.flush()?;
@@ -332,6 +340,41 @@ impl Live<'_> {
             Key::Quit => {}
         }
         Ok(())
+    }
+}
+
+/// When something came last.
+struct Heard {
+    at: Instant,
+    patience: Duration,
+}
+
+impl Heard {
+    /// Notes that something came, if it did: a port that is open hands on empty pieces, too.
+    fn note(&mut self, arrival: &Arrival, link: &mut Link, face: &mut dyn Face) {
+        if matches!(arrival, Arrival::Bytes { bytes, .. } if bytes.is_empty()) {
+            return;
+        }
+        if let Some(silent_s) = link.silent_s.take() {
+            face.say(&format!("{} sends again, after {silent_s:.0} s of silence", link.name));
+            self.patience = 2 * self.at.elapsed();
+        }
+        self.at = Instant::now();
+    }
+
+    /// Says that it is silent, if it is; what went away was said.
+    fn look(&self, link: &mut Link, face: &mut dyn Face) {
+        let silence = self.at.elapsed();
+        if link.gone.is_some() || silence < self.patience {
+            return;
+        }
+        if link.silent_s.replace(silence.as_secs_f64()).is_none() {
+            face.say(&format!(
+                "{}: nothing came for {} s: see that the sensor has power and sends by itself",
+                link.name,
+                silence.as_secs()
+            ));
+        }
     }
 }
 

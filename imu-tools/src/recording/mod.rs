@@ -117,6 +117,13 @@ impl Block {
             && self.poses.is_empty()
     }
 
+    /// The first stamp of gyroscope and accelerometer, ns, whichever is earlier.
+    #[must_use]
+    pub fn first_ns(&self) -> Option<i64> {
+        let first = [self.gyroscope.first(), self.accelerometer.first()];
+        first.into_iter().flatten().map(|sample| sample.stamp_ns).min()
+    }
+
     /// Empties all lists and keeps their memory.
     pub fn clear(&mut self) {
         self.gyroscope.clear();

@@ -145,6 +145,9 @@ pub fn hint(view: &View) -> Option<String> {
     if let Some(why) = &view.link.gone {
         return Some(format!("{why}: waiting for it to come back"));
     }
+    if let Some(silent_s) = view.link.silent_s {
+        return Some(format!("nothing came for {}: has the sensor power?", duration(silent_s)));
+    }
     if view.paused {
         return Some("paused: samples are passed over".into());
     }
@@ -216,6 +219,7 @@ pub fn json(view: &View, within: f64) -> Value {
             "name": link.name,
             "protocol": link.protocol,
             "gone": link.gone,
+            "silent_s": link.silent_s,
             "bytes": link.bytes,
             "refused": link.refused,
             "bad_checksums": link.bad_checksums,

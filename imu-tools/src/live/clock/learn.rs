@@ -41,7 +41,7 @@ pub(super) fn from(held: &[(i64, Message)], before: Option<&Track>) -> Option<Tr
     let (origin_ns, first) = held.first()?;
     let source = source(held);
     let steps = steps(held, source);
-    let stride = stride(&steps, source);
+    let Steps { stride, grain } = Steps::of(&steps, source);
     let passed = steps.iter().map(|step| step.map_or(stride, |step| step as f64));
     let points: Vec<(f64, f64)> = held
         .iter()
@@ -75,6 +75,8 @@ pub(super) fn from(held: &[(i64, Message)], before: Option<&Track>) -> Option<Tr
         source,
         origin_ns: *origin_ns,
         stride,
+        learnt_from: held.len() as u64,
+        grain,
         unit_ns,
         tick_ns,
         reading,
@@ -105,21 +107,44 @@ fn steps(held: &[(i64, Message)], source: Source) -> Vec<Option<u64>> {
     readings().zip(readings().skip(1)).map(step).collect()
 }
 
-/// Units from a message to the next: the median or, of ticks, which may be coarse, the mean of those that
-/// rounding and half a period explain.
-fn stride(steps: &[Option<u64>], source: Source) -> f64 {
-    let steps = || steps.iter().flatten().copied();
-    // Two messages of one instant have no step between them.
-    let usual = median(steps()).filter(|step| *step > 0);
-    let usual = usual.or(median(steps().filter(|step| *step > 0))).unwrap_or(1);
-    let near = || steps().filter(|step| step.abs_diff(usual) <= (usual / 2).max(1));
-    let same = near().filter(|step| *step == usual).count();
-    // Where nearly all are one tick, the others are late, or miss a message.
-    if source != Source::Ticks || (usual == 1 && same as f64 >= NEARLY_ALL * near().count() as f64)
-    {
-        return usual as f64;
+/// What units from message to message show.
+struct Steps {
+    /// Units from a message to the next, on average.
+    stride: f64,
+    /// What readings are whole numbers of: a text's milliseconds, in nanoseconds; 0 of what counts messages.
+    grain: u64,
+}
+
+impl Steps {
+    /// The median or, of ticks, which may be coarse, the mean of those that rounding and half a period explain.
+    fn of(steps: &[Option<u64>], source: Source) -> Self {
+        let moved = || steps.iter().flatten().copied().filter(|step| *step > 0);
+        // Two messages of one instant have no step between them.
+        let usual = median(steps.iter().flatten().copied()).filter(|step| *step > 0);
+        let usual = usual.or(median(moved())).unwrap_or(1);
+        if source != Source::Ticks {
+            return Self { stride: usual as f64, grain: 0 };
+        }
+        let grain = moved().fold(0, gcd).max(1);
+        let near = || {
+            let explained = |step: &u64| step.abs_diff(usual) <= (usual / 2).max(grain);
+            steps.iter().flatten().copied().filter(explained)
+        };
+        let (count, same) = (near().count(), near().filter(|step| *step == usual).count());
+        // Where nearly all are one and the same, the others are late, or miss a message.
+        if count == 0 || (usual == grain && same as f64 >= NEARLY_ALL * count as f64) {
+            return Self { stride: usual as f64, grain: 1 };
+        }
+        Self { stride: near().map(|step| step as f64).sum::<f64>() / count as f64, grain }
     }
-    near().map(|step| step as f64).sum::<f64>() / near().count() as f64
+}
+
+/// The greatest common divisor (Euclid).
+fn gcd(mut a: u64, mut b: u64) -> u64 {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a
 }
 
 /// The latest message of each burst, which waited least.

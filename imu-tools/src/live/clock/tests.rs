@@ -61,6 +61,28 @@ fn ticks_wrap_where_they_say_and_losses_are_seen() {
 }
 
 #[test]
+fn ticks_coarser_than_messages() {
+    // 400 Hz by a clock of milliseconds: steps of 2 and 3. The mean over 2 s is known to a tick of 2000.
+    let ticks = |k: i64| Ticks { value: (k as u64 * 5) / 2, per_second: 1000, wraps_at: None };
+    let message = |k| Message { ticks: Some(ticks(k)), ..Message::default() };
+    let sent = (0..8000_i64).filter(|k| !(5000..5003).contains(k));
+    let (clock, all) = taken(sent.map(|k| (read(k * 5 * MS / 2), message(k))));
+    assert_eq!(lost(&all), [(5000, 3)]);
+    let status = clock.status();
+    assert!(status.lost_is_certain && (status.rate_hz - 400.0).abs() < 0.4, "{status:?}");
+    assert!(all.iter().all(|taken| (taken.interval_s - 0.0025).abs() < 5e-6), "as for increments");
+    // Two messages of each instant: their number is the rate.
+    let ticks = |k: i64| Ticks {
+        value: k as u64 / 2 * 10_000,
+        ..Ticks { per_second: 1_000_000, ..ticks(0) }
+    };
+    let message = |k| Message { ticks: Some(ticks(k)), ..Message::default() };
+    let (clock, all) = taken((0..8000).map(|k| (read(k * 5 * MS), message(k))));
+    assert_eq!((lost(&all), clock.status().restarts), (vec![], 0));
+    assert!((clock.status().rate_hz - 200.0).abs() < 0.2, "{:?}", clock.status());
+}
+
+#[test]
 fn messages_without_ticks_are_counted_once() {
     for wraps_at in [None, Some(1 << 24)] {
         let (clock, all) = taken((0..1000_i64).map(|k| {

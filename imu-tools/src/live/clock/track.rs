@@ -43,16 +43,11 @@ const SET_NS: f64 = 1e9;
 /// With fewer points the curve does not show a lost message.
 const SETTLED: f64 = 60.0;
 
-/// The part of a tick's distance from the even line of messages by which that line follows: a second or so.
+/// The part of a reading's distance from the even line of messages by which that line follows: a second or so.
 const FOLLOWED: f64 = 1.0 / 128.0;
 
-/// Messages after which their own number tells best how many units lie between two.
-const COUNTED: u64 = 64;
-
-/// How far a reading may be from the truth, ticks: it is a whole number.
-const ROUNDING: f64 = 0.5;
-
-/// With less than so many times that between messages, one that is missing cannot be told from it.
+/// With less than so many times the rounding of a reading between messages, one that is missing cannot be told
+/// from it.
 const FINE: f64 = 4.0;
 
 /// How far the line may be too low, in periods, and how late the earliest of a second may be read, ns.
@@ -82,6 +77,10 @@ pub(super) struct Start {
     pub origin_ns: i64,
     /// Units from a message to the next, on average.
     pub stride: f64,
+    /// Messages that showed it.
+    pub learnt_from: u64,
+    /// Readings are whole numbers of so many units; 0: they are exact.
+    pub grain: u64,
     /// Host time of a unit.
     pub unit_ns: f64,
     /// What the sensor says that it is.
@@ -98,6 +97,9 @@ pub(super) struct Track {
     origin_ns: i64,
     /// Units from a message to the next, as the first of them showed: no whole number where ticks are coarse.
     stride: f64,
+    learnt_from: u64,
+    /// How far a reading may be from the truth, units.
+    rounding: f64,
     unit_ns: f64,
     tick_ns: Option<f64>,
     reading: Option<Reading>,
@@ -109,8 +111,8 @@ pub(super) struct Track {
     units: u64,
     /// Messages among them, lost ones counted.
     messages: u64,
-    /// How far the last tick was from the even line of messages, ticks: ticks of a millisecond are 2 and 3
-    /// apart at 400 Hz.
+    /// How far the last reading was from the even line of messages, units: milliseconds are 2 and 3 apart at
+    /// 400 Hz.
     uneven: f64,
     last_arrival_ns: i64,
     /// Offset at `since` (sensor time, s) in ns, and its drift, ns/s.
@@ -143,6 +145,8 @@ impl Track {
             source: start.source,
             origin_ns: start.origin_ns,
             stride: start.stride,
+            learnt_from: start.learnt_from.max(1),
+            rounding: 0.5 * start.grain as f64,
             unit_ns: start.unit_ns,
             tick_ns: start.tick_ns,
             reading: start.reading,
@@ -182,20 +186,13 @@ impl Track {
 
     /// Units from a message to the next, on average, lost ones counted.
     fn mean_stride(&self) -> f64 {
-        match self.messages {
-            ..COUNTED => self.stride,
-            messages => self.units as f64 / messages as f64,
-        }
+        let many = self.messages >= self.learnt_from;
+        if many { self.units as f64 / self.messages as f64 } else { self.stride }
     }
 
     /// Units from a message to the next, as one reading can tell them.
     fn step(&self) -> u64 {
         self.stride.round() as u64
-    }
-
-    /// How far a reading may be from the even line of messages, units.
-    fn rounding(&self) -> f64 {
-        if self.source == Source::Ticks { ROUNDING } else { 0.0 }
     }
 
     /// Host time from a message to the next, ns.
@@ -208,7 +205,7 @@ impl Track {
         let rate = 1e9 / self.period_ns();
         let Curve { slope_sd, points, .. } = self.curve;
         // The first and the last reading are rounded, each evenly.
-        let rounded = self.rounding() * (2.0_f64 / 3.0).sqrt() / self.units.max(1) as f64;
+        let rounded = self.rounding * (2.0_f64 / 3.0).sqrt() / self.units.max(1) as f64;
         let sd = (1e-9 * slope_sd).hypot(rounded);
         (rate, if points > 2.0 { rate * sd } else { f64::INFINITY })
     }
@@ -229,7 +226,7 @@ impl Track {
         units * self.unit_ns * 1e-9
     }
 
-    /// Units up to the last message, less the rounding of its tick.
+    /// Units up to the last message, less the rounding of its reading.
     fn position(&self) -> f64 {
         self.units as f64 - self.uneven
     }
@@ -258,7 +255,7 @@ impl Track {
         let stride = self.mean_stride();
         let units = next.units as f64 / next.lost.saturating_add(1) as f64;
         // Two readings are rounded: what they can explain is no other interval.
-        let same = next.restart || next.units == 0 || (units - stride).abs() <= 2.0 * ROUNDING;
+        let same = next.restart || next.units == 0 || (units - stride).abs() <= 2.0 * self.rounding;
         unit_ns * if same { stride } else { units }
     }
 
@@ -304,7 +301,7 @@ impl Track {
 
     /// How many messages are missing where so many units passed up to the next, and whether that is certain.
     fn lost_among(&mut self, units: u64) -> (u64, bool) {
-        let (stride, rounding) = (self.stride, self.rounding());
+        let (stride, rounding) = (self.stride, self.rounding);
         let beyond = units as f64 + self.uneven - stride;
         let fine = stride >= FINE * rounding;
         let explained = if fine { 0.0 } else { rounding };

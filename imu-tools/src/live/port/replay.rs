@@ -50,7 +50,7 @@ fn play(
                     let again = before(&mut block, again_ns);
                     to.send(Arrival::Samples(again, samples)).ok()?;
                 }
-                let (began, first_ns) = match (start, first(&block)) {
+                let (began, first_ns) = match (start, block.first_ns()) {
                     (Some(start), _) => start,
                     (None, Some(first_ns)) => (Instant::now(), first_ns),
                     (None, None) => continue,
@@ -71,11 +71,6 @@ fn play(
             }
         }
     }
-}
-
-fn first(block: &Block) -> Option<i64> {
-    let first = [block.gyroscope.first(), block.accelerometer.first()];
-    first.into_iter().flatten().map(|sample| sample.stamp_ns).min()
 }
 
 /// Takes out of a block what is stamped up to `until_ns`.
