@@ -131,10 +131,12 @@ impl Live {
             _ => Vec::new(),
         };
         self.results.check(&recordings)?;
+        self.results.make_folder()?;
         let checkpoint = self.checkpoint.clone().or_else(|| {
             let wanted = self.resume || !address.comes_again();
             wanted.then(|| PathBuf::from(CHECKPOINT))
         });
+        self.check_names(checkpoint.as_deref())?;
         let place = checkpoint.as_deref().map(Place::take).transpose()?;
         let session = self.session(&address, &options, checkpoint.as_deref())?;
         let how = How {
@@ -164,6 +166,7 @@ impl Live {
                 .map(|path| recording::grow(&path))
                 .transpose()?,
             raw: self.raw.as_deref().map(free).map(|path| Output::growing(&path)).transpose()?,
+            lost: Vec::new(),
         };
         let within = self.until.unwrap_or(WITHIN);
         let every = Duration::from_secs_f64(self.every);
@@ -176,6 +179,9 @@ impl Live {
             Box::new(Screen::open(within)?)
         };
         let mut save = |view: &View| {
+            if let Some(refusal) = &view.snapshot.refusal {
+                return Err(Error::data(refusal.to_string()));
+            }
             self.results.write(&view.snapshot.calibration)?;
             Ok(match &self.results.output {
                 Some(folder) => {
@@ -186,20 +192,42 @@ impl Live {
         };
         let goal = Goal { within: self.until, span_s: self.span };
         let live = run::Live { session, port, decode, keep, goal, save: &mut save };
-        let ran = live.run(&mut *face);
+        let (view, ended) = live.run(&mut *face);
         drop(face);
-        let (view, ended) = ran?;
-        let signal = match ended {
-            Ended::Signal(signal) => Some(signal),
-            Ended::Goal | Ended::Input | Ended::Quit => None,
-        };
-        match (self.tell(view), signal) {
-            // A terminal that was closed takes no report, and a checkpoint is written.
-            (told, None) => told?,
-            (Err(error), Some(_)) => super::say(&format!("imu: {error}")),
-            (Ok(()), Some(_)) => {}
+        let has_samples = view.samples != [0, 0];
+        match ended {
+            Ok(Ended::Goal | Ended::Input | Ended::Quit) => self.tell(view).map(|()| None),
+            Ok(Ended::Signal(signal)) => {
+                // A terminal that was closed takes no report, and a checkpoint is written.
+                self.tell(view).unwrap_or_else(|error| super::say(&format!("imu: {error}")));
+                Ok(Some(signal))
+            }
+            Err(error) => {
+                // What was measured is told, whatever went wrong.
+                if has_samples && let Err(also) = self.tell(view) {
+                    super::say(&format!("imu: {also}"));
+                }
+                Err(error)
+            }
         }
-        Ok(signal)
+    }
+
+    /// Refuses one name for two files.
+    fn check_names(&self, checkpoint: Option<&Path>) -> Result<(), Error> {
+        let files = [
+            ("--checkpoint", checkpoint),
+            ("--record", self.record.as_deref()),
+            ("--raw", self.raw.as_deref()),
+        ];
+        let mut pairs = files.iter().enumerate().flat_map(|(n, a)| {
+            let others = files.iter().skip(n + 1);
+            others.filter(move |b| a.1.is_some() && a.1 == b.1).map(move |b| (a.0, b.0))
+        });
+        pairs.next().map_or(Ok(()), |(one, other)| {
+            Err(Error::usage(format!(
+                "{one} and {other} name the same file: name another for one of them"
+            )))
+        })
     }
 
     /// A session that goes on, or a new one, if nothing is lost by that.
@@ -210,9 +238,11 @@ impl Live {
         checkpoint: Option<&Path>,
     ) -> Result<Session, Error> {
         let name = address.name();
-        let (Some(path), false) = (checkpoint, self.fresh) else {
+        let Some(path) = checkpoint else { return Ok(Session::new(&name, options)) };
+        if self.fresh {
+            checkpoint::check_is_one(path)?;
             return Ok(Session::new(&name, options));
-        };
+        }
         let found = checkpoint::read(path)?;
         let Some(found) = found else {
             if self.resume {
@@ -247,15 +277,17 @@ impl Live {
         if let Some(refusal) = view.snapshot.refusal {
             return Err(refusal);
         }
-        self.results.write(calibration)?;
+        let written = self.results.write(calibration);
         if self.json {
             let mut report = report::json::calibration(calibration);
             if let Some(fields) = report.as_object_mut() {
                 fields.shift_insert(0, "kind".into(), "report".into());
             }
-            return super::print(&format!("{report}\n"));
+            super::print(&format!("{report}\n"))?;
+        } else {
+            self.results.say(calibration)?;
         }
-        self.results.say(calibration)
+        written
     }
 }
 

@@ -116,6 +116,13 @@ impl Results {
         }
     }
 
+    /// Makes the folder for the results, so that a name that cannot be one is told before hours of work.
+    pub(super) fn make_folder(&self) -> Result<(), Error> {
+        self.output.as_deref().map_or(Ok(()), |folder| {
+            std::fs::create_dir_all(folder).map_err(|e| Error::io("make the folder", folder, e))
+        })
+    }
+
     /// The flags as the library takes them.
     pub(super) fn options(&self) -> Result<Options, Error> {
         let two = FittedTerms::Given(Terms::default());

@@ -14,7 +14,7 @@
 //! the other keeps.
 
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Seek as _, Write as _};
+use std::io::{self, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
@@ -186,9 +186,31 @@ pub fn read(path: &Path) -> Result<Option<Found>, Error> {
             Ok(Some(Found { payload, warning: Some(warning) }))
         }
         Err(_) => Err(Error::data(format!(
-            "the checkpoint {} {why}, and there is no whole one before it: begin anew with --fresh",
-            path.display()
+            "the checkpoint {} {why}, and there is no whole one before it: begin anew with {}",
+            path.display(),
+            if check_is_one(path).is_ok() { "--fresh" } else { "another --checkpoint" }
         ))),
+    }
+}
+
+/// Refuses a file that is none of ours: it is not replaced.
+///
+/// # Errors
+/// When `path` is another's file.
+pub fn check_is_one(path: &Path) -> Result<(), Error> {
+    let mut beginning = Vec::new();
+    if let Ok(file) = File::open(path) {
+        let read = file.take(MAGIC.len() as u64).read_to_end(&mut beginning);
+        read.map_err(|source| Error::io("read the checkpoint", path, source))?;
+    }
+    let same = beginning.iter().zip(MAGIC).all(|(a, b)| a == b);
+    if same {
+        Ok(())
+    } else {
+        Err(Error::usage(format!(
+            "{} is no checkpoint, and is not replaced: name another with --checkpoint",
+            path.display()
+        )))
     }
 }
 

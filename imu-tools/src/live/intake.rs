@@ -4,7 +4,7 @@
 //! of which hardly any is part of a message end the session with a sentence: a wrong baud rate, or a
 //! protocol that is none of ours.
 
-use super::clock::Clock;
+use super::clock::{Clock, Source};
 use super::link::{Link, LinkClock};
 use super::protocol::{Decoder, Protocol, candidate, candidates, recognise};
 use super::rates::rates;
@@ -183,6 +183,7 @@ impl Decode for Intake {
         (link.bad_checksums, link.messages) = (tally.damaged, tally.messages);
         let status = self.clock.status();
         link.clock = (status.rate_hz > 0.0).then_some(LinkClock {
+            by_arrival: status.source == Source::Arrival,
             rate_hz: status.rate_hz,
             rate_sd_hz: status.rate_sd_hz,
             jitter_s: status.jitter_s,

@@ -28,6 +28,8 @@ pub struct Link {
 /// What the clock of a link found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LinkClock {
+    /// Messages carry neither time nor count: theirs is when they came.
+    pub by_arrival: bool,
     /// Messages a second.
     pub rate_hz: f64,
     /// Its standard deviation, Hz.

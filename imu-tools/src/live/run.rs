@@ -114,6 +114,8 @@ pub struct Keep {
     pub record: Option<Box<dyn Sink>>,
     /// The bytes.
     pub raw: Option<Output>,
+    /// What could not be kept: the session goes on without it.
+    pub lost: Vec<Error>,
 }
 
 impl Keep {
@@ -126,18 +128,37 @@ impl Keep {
         }
     }
 
-    fn flush(&mut self) -> Result<(), Error> {
-        if let Some(record) = &mut self.record {
-            record.flush()?;
+    /// Writes to the recording, if there is one; one that cannot be written is given up, and stays as it is.
+    fn record(&mut self, write: impl FnOnce(&mut dyn Sink) -> Result<(), Error>) {
+        if let Some(record) = &mut self.record
+            && let Err(error) = write(record.as_mut())
+        {
+            self.record = None;
+            self.lost.push(error);
         }
-        self.raw.as_mut().map_or(Ok(()), Output::sync)
     }
 
-    /// Completes the files.
+    /// The same of the bytes.
+    fn raw(&mut self, write: impl FnOnce(&mut Output) -> Result<(), Error>) {
+        if let Some(raw) = &mut self.raw
+            && let Err(error) = write(raw)
+        {
+            self.raw = None;
+            self.lost.push(error);
+        }
+    }
+
+    fn flush(&mut self) {
+        self.record(|record| record.flush());
+        self.raw(Output::sync);
+    }
+
+    /// Completes the files; the first thing that was not kept.
     fn close(self) -> Result<(), Error> {
         let record = self.record.map_or(Ok(()), Sink::finish);
         let raw = self.raw.map_or(Ok(()), Output::finish);
-        record.and(raw)
+        let lost = self.lost.into_iter().next().map_or(Ok(()), Err);
+        lost.and(record).and(raw)
     }
 }
 
@@ -158,19 +179,16 @@ pub struct Live<'a> {
 }
 
 impl Live<'_> {
-    /// Runs until an end; the last view, and why it ended. Whatever ends it, checkpoint and recordings are
-    /// complete.
-    ///
-    /// # Errors
-    /// What the port says, or when something cannot be written.
-    pub fn run(mut self, face: &mut dyn Face) -> Result<(View, Ended), Error> {
+    /// Runs until an end; the last view, and why it ended, or what went wrong: the port, or something that
+    /// could not be written. Whatever ends it, checkpoint and recordings are complete.
+    pub fn run(mut self, face: &mut dyn Face) -> (View, Result<Ended, Error>) {
         let mut link = Link { name: self.port.name.clone(), ..Link::default() };
         let mut told = None;
         let followed = self.follow(face, &mut link, &mut told);
         let mut steps = Vec::new();
         let last = self.decode.as_mut().map_or(Ok(()), |decode| decode.finish(&mut steps));
-        let taken = self.proceed(steps);
-        let ended = followed.and_then(|ended| last.and(taken).map(|()| ended));
+        self.proceed(steps);
+        let ended = followed.and_then(|ended| last.map(|()| ended));
         if let Some(decode) = &self.decode {
             decode.tell(&mut link);
         }
@@ -178,9 +196,8 @@ impl Live<'_> {
         let over = matches!(ended, Ok(Ended::Goal | Ended::Input | Ended::Quit));
         let kept = self.keep.checkpoint(&self.session, over);
         let closed = self.keep.close();
-        let ended = ended?;
-        kept.and(closed)?;
-        Ok((self.session.view(&link), ended))
+        let ended = ended.and_then(|ended| kept.and(closed).map(|()| ended));
+        (self.session.view(&link), ended)
     }
 
     /// `told` is what the user was told of the stream.
@@ -192,6 +209,7 @@ impl Live<'_> {
     ) -> Result<Ended, Error> {
         let (mut shown, mut flushed, mut kept) = (Instant::now(), Instant::now(), Instant::now());
         let (mut between, mut look_at_s) = (face.every(), 0.0);
+        let (mut lost, mut refused) = (0, None);
         let mut heard = Heard { at: Instant::now(), patience: SILENCE };
         loop {
             match self.port.arrivals.try_recv() {
@@ -213,13 +231,23 @@ impl Live<'_> {
                 heard.look(link, face);
             }
             if flushed.elapsed() >= FLUSH {
-                self.keep.flush()?;
+                self.keep.flush();
                 flushed = Instant::now();
+            }
+            for error in
+                self.keep.lost.iter().skip(std::mem::replace(&mut lost, self.keep.lost.len()))
+            {
+                face.say(&format!("warning: {error}; the session goes on without it"));
             }
             if let Some((_, every)) = &self.keep.checkpoint
                 && kept.elapsed() >= *every
             {
-                self.keep.checkpoint(&self.session, false)?;
+                let now = self.keep.checkpoint(&self.session, false).err().map(|e| e.to_string());
+                if refused != now {
+                    now.iter()
+                        .for_each(|why| face.say(&format!("warning: {why}; it is tried again")));
+                    refused = now;
+                }
                 kept = Instant::now();
             }
             if !self.goal.is_none() && self.session.span_s() >= look_at_s {
@@ -235,7 +263,7 @@ impl Live<'_> {
                 if key == Key::Quit {
                     return Ok(Ended::Quit);
                 }
-                self.press(key, face, link)?;
+                self.press(key, face, link);
                 between = Duration::ZERO;
             }
             if shown.elapsed() >= between {
@@ -265,16 +293,14 @@ impl Live<'_> {
     ) -> Result<bool, Error> {
         match arrival {
             Arrival::Bytes { arrival_ns, bytes } => {
-                if let Some(raw) = &mut self.keep.raw {
-                    raw.write(&bytes)?;
-                }
+                self.keep.raw(|raw| raw.write(&bytes));
                 let mut steps = Vec::new();
                 if let Some(decode) = &mut self.decode {
                     decode.feed(arrival_ns, &bytes, &mut steps)?;
                 }
-                self.proceed(steps)?;
+                self.proceed(steps);
             }
-            Arrival::Samples(block, samples) => self.take(block, samples)?,
+            Arrival::Samples(block, samples) => self.take(block, samples),
             Arrival::Note(Note::Info(sentence)) => face.say(&sentence),
             Arrival::Note(Note::Warning(sentence)) => face.say(&format!("warning: {sentence}")),
             Arrival::Gone(why) => {
@@ -288,7 +314,7 @@ impl Live<'_> {
                 if let Some(decode) = &mut self.decode {
                     decode.reopened(&mut steps);
                 }
-                self.proceed(steps)?;
+                self.proceed(steps);
             }
             Arrival::End => return Ok(false),
             Arrival::Failed(error) => return Err(error),
@@ -296,34 +322,32 @@ impl Live<'_> {
         Ok(true)
     }
 
-    fn proceed(&mut self, steps: Vec<Step>) -> Result<(), Error> {
+    fn proceed(&mut self, steps: Vec<Step>) {
         for step in steps {
             match step {
-                Step::Samples(block, samples) => self.take(block, samples)?,
+                Step::Samples(block, samples) => self.take(block, samples),
                 Step::Restart => self.session.restart(),
             }
         }
-        Ok(())
     }
 
-    fn take(&mut self, mut block: Block, samples: SampleKind) -> Result<(), Error> {
+    fn take(&mut self, mut block: Block, samples: SampleKind) {
         self.session.take(&mut block);
-        match &mut self.keep.record {
-            Some(record) if !block.is_empty() => {
+        if !block.is_empty() {
+            self.keep.record(|record| {
                 record.samples_are(samples);
                 record.write_block(&block)
-            }
-            _ => Ok(()),
+            });
         }
     }
 
-    fn press(&mut self, key: Key, face: &mut dyn Face, link: &mut Link) -> Result<(), Error> {
+    fn press(&mut self, key: Key, face: &mut dyn Face, link: &mut Link) {
         match key {
             Key::Save => {
-                self.keep.checkpoint(&self.session, false)?;
-                self.keep.flush()?;
+                let kept = self.keep.checkpoint(&self.session, false);
+                self.keep.flush();
                 let view = self.view(link);
-                match (self.save)(&view) {
+                match kept.and_then(|()| (self.save)(&view)) {
                     Ok(said) => face.say(&said),
                     // The session goes on: the results can be saved later, elsewhere.
                     Err(error) => face.say(&format!("not saved: {error}")),
@@ -339,7 +363,6 @@ impl Live<'_> {
             }
             Key::Quit => {}
         }
-        Ok(())
     }
 }
 

@@ -89,8 +89,27 @@ fn line(number: i64) -> String {
     format!("{} {}\n", number * 1_000_000, number * number % 101)
 }
 
+/// A disk that is full.
+struct Full;
+
+impl Sink for Full {
+    fn write_block(&mut self, _: &Block) -> Result<(), Error> {
+        Err(Error::data("the disk is full"))
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), Error> {
+        Ok(())
+    }
+}
+
 /// Runs until `enough` samples came from `address`.
 fn follow(address: &Address, enough: u64, keep: Keep) -> (View, Vec<String>) {
+    let (view, said, ended) = run(address, enough, keep);
+    assert_eq!(ended.unwrap(), Ended::Quit);
+    (view, said)
+}
+
+fn run(address: &Address, enough: u64, keep: Keep) -> (View, Vec<String>, Result<Ended, Error>) {
     let how = How { baud: Some(115_200), ..How::default() };
     let live = Live {
         session: Session::new("it", &Options::default()),
@@ -101,9 +120,8 @@ fn follow(address: &Address, enough: u64, keep: Keep) -> (View, Vec<String>) {
         save: &mut |_| Ok(String::new()),
     };
     let mut watch = Watch { said: Vec::new(), enough, quit: Arc::default() };
-    let (view, ended) = live.run(&mut watch).unwrap();
-    assert_eq!(ended, Ended::Quit);
-    (view, watch.said)
+    let (view, ended) = live.run(&mut watch);
+    (view, watch.said, ended)
 }
 
 /// A pseudo-terminal whose other end stands at `link`.
@@ -159,6 +177,24 @@ fn a_device_that_hangs_up_is_waited_for_and_the_time_is_a_gap() {
     );
     let lines = fs::read_to_string(raw).unwrap();
     assert_eq!(lines.lines().count(), 6001);
+}
+
+#[test]
+fn a_recording_that_cannot_be_written_is_given_up_and_the_measurement_goes_on() {
+    let server = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = Address::Tcp(server.local_addr().unwrap().to_string());
+    let sender = std::thread::spawn(move || {
+        let (mut stream, _) = server.accept().unwrap();
+        let text: String = (0..6000).map(line).collect();
+        stream.write_all(text.as_bytes()).unwrap();
+        stream
+    });
+    let keep = Keep { record: Some(Box::new(Full)), ..Keep::default() };
+    let (view, said, ended) = run(&address, 6000, keep);
+    let _stream = sender.join().unwrap();
+    assert_eq!(view.samples[0], 6000);
+    assert_eq!(said, ["warning: the disk is full; the session goes on without it"]);
+    assert_eq!(ended.unwrap_err().to_string(), "the disk is full");
 }
 
 #[test]

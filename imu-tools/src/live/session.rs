@@ -52,6 +52,8 @@ struct State {
     came: [u64; 3],
     /// Times that it went on from a checkpoint.
     resumed: u32,
+    /// Times that the sensor began anew.
+    restarts: u64,
     /// It ended as it should: there is nothing to go on with.
     ended: bool,
     celsius: Option<f64>,
@@ -201,6 +203,7 @@ impl Session {
 
     /// The sensor was switched off and on.
     pub fn restart(&mut self) {
+        self.kept.restarts += 1;
         self.running.restart();
     }
 
@@ -230,7 +233,7 @@ impl Session {
     #[must_use]
     pub fn view(&self, link: &Link) -> View {
         let mut snapshot = self.running.snapshot(&self.name);
-        self.add_remarks(&mut snapshot.calibration);
+        self.add_remarks(&mut snapshot.calibration, link);
         View {
             snapshot,
             link: link.clone(),
@@ -243,10 +246,25 @@ impl Session {
     }
 
     /// What a reader of the report should know of the session.
-    fn add_remarks(&self, calibration: &mut Calibration) {
-        let State { marks, resumed, .. } = &self.kept;
+    fn add_remarks(&self, calibration: &mut Calibration, link: &Link) {
+        let State { marks, resumed, restarts, .. } = &self.kept;
+        let times = |n: u64| if n == 1 { "once".to_owned() } else { format!("{n} times") };
         if *resumed > 0 {
-            calibration.remarks.push(format!("went on from a checkpoint {resumed} times"));
+            let times = times(u64::from(*resumed));
+            calibration.remarks.push(format!("went on from a checkpoint {times}"));
+        }
+        if *restarts > 0 {
+            let times = times(*restarts);
+            calibration
+                .remarks
+                .push(format!("the sensor began anew {times}: no difference spans that"));
+        }
+        if link.clock.is_some_and(|clock| clock.by_arrival) {
+            calibration.remarks.push(
+                "the sensor sends neither time nor count: samples are as far apart as they came, and the rate \
+                 is wrong if they came faster than they were measured"
+                    .to_owned(),
+            );
         }
         for (number, mark) in (1..).zip(marks) {
             calibration.remarks.push(format!("mark {number} at {:.1} s", mark.at_s));

@@ -225,6 +225,7 @@ pub fn json(view: &View, within: f64) -> Value {
             "bad_checksums": link.bad_checksums,
             "messages": link.messages,
             "clock": link.clock.map(|clock| json!({
+                "by_arrival": clock.by_arrival,
                 "rate_hz": clock.rate_hz,
                 "rate_sd_hz": clock.rate_sd_hz,
                 "jitter_s": clock.jitter_s,

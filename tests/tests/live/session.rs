@@ -270,6 +270,17 @@ fn what_cannot_be_is_one_sentence() {
             "there is no checkpoint",
         ),
         (
+            &["live", text(&path), "--raw", "q", "--record", "q"],
+            2,
+            "--record and --raw name the same",
+        ),
+        (
+            &["live", text(&path), "--fresh", "--checkpoint", text(&path)],
+            2,
+            "is no checkpoint, and is not replaced",
+        ),
+        (&["live", text(&path), "-o", text(&path)], 1, "cannot make the folder"),
+        (
             &["live", text(&path), "--checkpoint", "/no/such"],
             1,
             "cannot write the checkpoint /no/such",

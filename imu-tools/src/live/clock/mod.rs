@@ -183,21 +183,35 @@ impl Clock {
         // The memory is needed for a few seconds of a run of days: it is given back.
         let held = std::mem::take(&mut self.held);
         let mut messages = held.as_slice();
+        if let Some(mut track) = self.before.take_if(|before| before.explains(messages)) {
+            let next = messages.first().and_then(|(arrival_ns, m)| track.next(*arrival_ns, m));
+            self.track = Some(track);
+            messages = self.follow(messages, next, to);
+        }
         while let Some(mut track) = learn::from(messages, self.before.as_ref()) {
             let first = self.join(&mut track);
             self.track = Some(track);
-            let mut next = Some(first);
-            while let (Some(now), Some((head, rest))) = (next, messages.split_first()) {
-                self.stamp(head.0, &head.1, now, to);
-                messages = rest;
-                next = rest.first().zip(self.track.as_mut()).and_then(|(m, t)| t.next(m.0, &m.1));
-            }
-            if messages.is_empty() {
-                return;
-            }
-            // A counter that began anew while it was learnt from.
+            messages = self.follow(messages, Some(first), to);
+        }
+    }
+
+    /// Hands messages on as long as each is connected with the one before, and says which are left: a counter
+    /// began anew while it was learnt from.
+    fn follow<'a>(
+        &mut self,
+        mut messages: &'a [(i64, Message)],
+        mut next: Option<Next>,
+        to: &mut impl FnMut(&Message, Taken),
+    ) -> &'a [(i64, Message)] {
+        while let (Some(now), Some((head, rest))) = (next, messages.split_first()) {
+            self.stamp(head.0, &head.1, now, to);
+            messages = rest;
+            next = rest.first().zip(self.track.as_mut()).and_then(|(m, t)| t.next(m.0, &m.1));
+        }
+        if !messages.is_empty() {
             self.before = self.track.take();
         }
+        messages
     }
 
     /// Lets stamps go on: a stretch that would begin before the end of the last is moved.

@@ -177,6 +177,21 @@ fn what_waited_for_seconds_begins_anew_a_few_times() {
 }
 
 #[test]
+fn a_sensor_that_pauses_without_a_clock_leaves_one_gap() {
+    for pause in [700, 3000, 9000] {
+        // 100 Hz; nothing is sent for a while, and nothing waited.
+        let sent = |k: i64| k * 10 * MS + if k < 4000 { 0 } else { pause * MS };
+        let (clock, all) = taken((0..8000).map(|k| (read(sent(k)), Message::default())));
+        let found = lost(&all);
+        // Bursts of 16 ms hide a message or two.
+        assert!(found.len() == 1 && found[0].0 == 4000, "{pause}: {found:?}");
+        assert!(found[0].1.abs_diff(pause as u64 / 10) <= 3, "{pause}: {found:?}");
+        let status = clock.status();
+        assert!(status.restarts == 1 && (status.rate_hz - 100.0).abs() < 0.1, "{status:?}");
+    }
+}
+
+#[test]
 fn hours_of_silence() {
     let hours = 7 * 3600 * 1000 * MS;
     let at = |k: i64| if k < 4000 { k * 10 * MS } else { k * 10 * MS + hours };

@@ -37,6 +37,11 @@ const SILENCE_NS: i64 = 1_000_000_000;
 /// A silence, ns, after which nothing tells how many messages were missed, without a counter.
 const LOST_TRACK_NS: i64 = 10_000_000_000;
 
+/// A shorter one, of so many ns and periods at least, is the reader's if what waited comes behind it at once, or
+/// the sensor's: which, is seen from what comes next.
+const PAUSE_NS: f64 = 500e6;
+const PAUSE_PERIODS: f64 = 20.0;
+
 /// Messages with ticks that are all so late, ns, were stamped by a clock that was set.
 const SET_NS: f64 = 1e9;
 
@@ -125,6 +130,8 @@ pub(super) struct Track {
     lost_track: bool,
     /// The sensor may have been switched off since.
     reopened: bool,
+    /// The silence before the next message was the reader's.
+    waited: bool,
     /// The present block: its beginning, messages, the earliest arrival and its distance.
     block_since: f64,
     block_since_ns: i64,
@@ -162,6 +169,7 @@ impl Track {
             passed_over: 0,
             lost_track: false,
             reopened: false,
+            waited: false,
             block_since: 0.0,
             block_since_ns: start.origin_ns,
             block_messages: 0,
@@ -282,7 +290,10 @@ impl Track {
                 let round = (late / (wrap as f64 * self.unit_ns) + 0.25).floor().max(0.0);
                 units = units.saturating_add((round as u64).saturating_mul(wrap));
             }
-        } else if self.source == Source::Arrival && silence >= LOST_TRACK_NS {
+        } else if self.source == Source::Arrival
+            && silence as f64 >= PAUSE_NS.max(PAUSE_PERIODS * self.period_ns())
+            && !std::mem::take(&mut self.waited)
+        {
             return None;
         }
         units = units.saturating_add(std::mem::take(&mut self.passed_over));
@@ -297,6 +308,22 @@ impl Track {
         self.reading = now.or(self.reading);
         let (lost, certain) = self.lost_among(units);
         Some(Next { units, lost, certain: certain || lost == 0, restart: false })
+    }
+
+    /// Whether what came behind a silence had been sent in it, and waited for its reader: then these messages
+    /// go on with the line.
+    pub fn explains(&mut self, held: &[(i64, Message)]) -> bool {
+        let (Some((first_ns, _)), Some((last_ns, _))) = (held.first(), held.last()) else {
+            return false;
+        };
+        let silence = first_ns.saturating_sub(self.last_arrival_ns);
+        if self.source != Source::Arrival || self.lost_track || silence >= LOST_TRACK_NS {
+            return false;
+        }
+        let elapsed = last_ns.saturating_sub(*first_ns) as f64;
+        let sent = held.len() as f64 * self.period_ns();
+        self.waited = sent >= 2.0 * elapsed || sent - elapsed >= 0.5 * silence as f64;
+        self.waited
     }
 
     /// How many messages are missing where so many units passed up to the next, and whether that is certain.
