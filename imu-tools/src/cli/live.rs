@@ -48,14 +48,14 @@ pub(super) struct Live {
     #[arg(value_name = "PORT")]
     port: String,
     /// Bits a second of a serial port; without it the usual ones are tried
-    #[arg(long, value_name = "BAUD")]
+    #[arg(long, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(1..))]
     baud: Option<u32>,
     /// What the sensor speaks; without it the bytes show it. docs/live-protocols.md lists the protocols
     #[arg(long, value_name = "NAME")]
     protocol: Option<Protocol>,
-    /// Replay a recording so many times faster than it was recorded; max or 0: as fast as can be
-    #[arg(long, value_name = "N", default_value = "max", value_parser = speed)]
-    speed: f64,
+    /// Replay a recording so many times faster than it was recorded; without it, as fast as can be
+    #[arg(long, value_name = "N", value_parser = speed)]
+    speed: Option<f64>,
     /// End when N and K of all axes together are known to this part of their values, such as 10%
     #[arg(long, value_name = "PERCENT", value_parser = percent)]
     until: Option<f64>,
@@ -126,6 +126,7 @@ impl Live {
             ..self.results.options()?
         };
         let address = Address::of(&self.port)?;
+        self.check_uses(&address)?;
         let recordings = match &address {
             Address::Recording(path) => vec![path.clone()],
             _ => Vec::new(),
@@ -142,7 +143,7 @@ impl Live {
         let how = How {
             baud: self.baud,
             reading: self.reading.options(),
-            speed: self.speed,
+            speed: self.speed.unwrap_or(0.0),
             again_ns: session.taken_until(),
         };
         let protocol = intake::named(self.protocol, &how.reading);
@@ -209,6 +210,25 @@ impl Live {
                 }
                 Err(error)
             }
+        }
+    }
+
+    /// Refuses what such a port has no use for.
+    fn check_uses(&self, address: &Address) -> Result<(), Error> {
+        let is_recording = address.comes_again();
+        let is_serial = matches!(address, Address::Serial(_));
+        let uses = [
+            ("--baud", self.baud.is_some(), is_serial, "a serial port"),
+            ("--protocol", self.protocol.is_some(), !is_recording, "bytes of a sensor"),
+            ("--raw", self.raw.is_some(), !is_recording, "bytes of a sensor"),
+            ("--speed", self.speed.is_some(), is_recording, "a recording"),
+        ];
+        match uses.iter().find(|(_, is_given, is_used, _)| *is_given && !is_used) {
+            Some((option, _, _, what)) => Err(Error::usage(format!(
+                "{option} is for {what}, and {} is none: leave it out",
+                address.name()
+            ))),
+            None => Ok(()),
         }
     }
 

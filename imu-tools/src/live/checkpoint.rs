@@ -63,12 +63,12 @@ impl Place {
     /// # Errors
     /// When another session keeps its checkpoints there, or the folder cannot be written.
     pub fn take(path: &Path) -> Result<Self, Error> {
-        let refused = |source| Error::io("write the checkpoint", path, source);
+        let refused = refused(path);
         let (part, previous) = (beside(path, ".part"), beside(path, ".previous"));
         if let Ok(latest) = File::open(path) {
             lock(&latest, path)?;
         } else if previous.exists() && one(&part).is_ok() {
-            fs::rename(&part, path).map_err(refused)?;
+            fs::rename(&part, path).map_err(&refused)?;
         }
         let locked = open(&part).map_err(refused)?;
         lock(&locked, path)?;
@@ -86,15 +86,14 @@ impl Place {
         bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
         bytes.extend_from_slice(payload);
         bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
-        let refused = |source| Error::io("write the checkpoint", &self.path, source);
-        let part = beside(&self.path, ".part");
+        let path = self.path.clone();
+        let (refused, part) = (refused(&path), beside(&path, ".part"));
         if !self.is_part {
-            let next = open(&part).map_err(refused)?;
-            lock(&next, &self.path)?;
+            let next = open(&part).map_err(&refused)?;
+            lock(&next, &path)?;
             (self.locked, self.is_part) = (next, true);
         }
-        self.put(&part, &bytes)
-            .map_err(|source| Error::io("write the checkpoint", &self.path, source))
+        self.put(&part, &bytes).map_err(refused)
     }
 
     fn put(&mut self, part: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -119,6 +118,11 @@ impl Drop for Place {
             let _ = fs::remove_file(part);
         }
     }
+}
+
+/// What is said where the disk is full or the folder cannot be written.
+fn refused(path: &Path) -> impl Fn(io::Error) -> Error {
+    |source| Error::io("write the checkpoint", path, source)
 }
 
 /// A file that is written from its beginning once it is locked.

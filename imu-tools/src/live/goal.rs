@@ -21,11 +21,11 @@ impl Goal {
         *self == Self::default()
     }
 
-    /// Whether it is reached. Where the recording asks for a flicker that hides K, its B stands for K: a
-    /// longer recording shows little more.
+    /// Whether it is reached after so many seconds. Where the recording asks for a flicker that hides K, its B
+    /// stands for K: a longer recording shows little more.
     #[must_use]
-    pub fn is_reached(&self, calibration: &Calibration) -> bool {
-        let long_enough = self.span_s.is_some_and(|span| calibration.span_s >= span);
+    pub fn is_reached(&self, span_s: f64, calibration: &Calibration) -> bool {
+        let long_enough = self.span_s.is_some_and(|goal| span_s >= goal);
         let sensors = || [&calibration.gyroscope, &calibration.accelerometer].into_iter().flatten();
         let known = self.within.is_some_and(|within| {
             sensors().next().is_some() && sensors().all(|sensor| is_known(sensor, within))

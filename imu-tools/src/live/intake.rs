@@ -72,14 +72,14 @@ impl Intake {
     /// tell what lines of text hold.
     ///
     /// # Errors
-    /// When the options are none for such lines.
+    /// When the options are none for such lines, or for this protocol.
     pub fn new(
         name: &str,
         protocol: Option<Protocol>,
         options: &ReadOptions,
     ) -> Result<Self, Error> {
         let state = match named(protocol, options) {
-            Some(protocol) => State::Known(Decoder::new(protocol, options)?),
+            Some(protocol) => State::Known(decoder(protocol, options)?),
             None => State::Unknown { first: Vec::new(), pieces: Vec::new(), tried: 0 },
         };
         let clock = Clock::default();
@@ -99,7 +99,7 @@ impl Intake {
             }
             return Err(unknown(&self.name, first));
         };
-        let mut decoder = Decoder::new(protocol, &self.options)?;
+        let mut decoder = decoder(protocol, &self.options)?;
         let (first, pieces) = (std::mem::take(first), std::mem::take(pieces));
         let mut rest = first.as_slice();
         for (arrival_ns, length) in pieces {
@@ -191,6 +191,23 @@ impl Decode for Intake {
             lost_is_certain: status.lost_is_certain,
             restarts: status.restarts,
         });
+    }
+}
+
+/// A decoder; options that it has no use for are refused.
+fn decoder(protocol: Protocol, options: &ReadOptions) -> Result<Decoder, Error> {
+    let given = [
+        ("--columns", options.columns.is_some()),
+        ("--map", options.map.is_some()),
+        ("--gyro-unit", options.gyro_unit.is_some()),
+        ("--accel-unit", options.accel_unit.is_some()),
+        ("--time-unit", options.time_unit.is_some()),
+    ];
+    match given.iter().find(|(_, is_given)| *is_given && protocol != Protocol::Text) {
+        Some((option, _)) => Err(Error::usage(format!(
+            "{option} is for lines of text, and {protocol} tells that itself: leave it out"
+        ))),
+        None => Decoder::new(protocol, options),
     }
 }
 

@@ -255,7 +255,8 @@ impl Live<'_> {
                 look_at_s = self.goal.span_s.map_or(look_at_s, |goal| {
                     if self.session.span_s() < goal { look_at_s.min(goal) } else { look_at_s }
                 });
-                if self.goal.is_reached(&self.session.view(link).snapshot.calibration) {
+                let calibration = self.session.view(link).snapshot.calibration;
+                if self.goal.is_reached(self.session.span_s(), &calibration) {
                     return Ok(Ended::Goal);
                 }
             }
@@ -332,6 +333,9 @@ impl Live<'_> {
     }
 
     fn take(&mut self, mut block: Block, samples: SampleKind) {
+        if let Some(span_s) = self.goal.span_s {
+            self.session.end_at(span_s, &mut block);
+        }
         self.session.take(&mut block);
         if !block.is_empty() {
             self.keep.record(|record| {

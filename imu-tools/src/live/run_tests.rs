@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use serial2::SerialPort;
 
@@ -57,11 +57,26 @@ impl Decode for Text {
     }
 }
 
+/// What a sender sees of the session that reads it.
+#[derive(Default)]
+struct Seen {
+    /// Times that the port was opened.
+    opened: AtomicU64,
+    samples: AtomicU64,
+}
+
+/// Waits until so much was seen.
+fn wait_for(number: &AtomicU64, least: u64) {
+    while number.load(Ordering::SeqCst) < least {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
 /// Remembers what was said, and quits when so many samples came.
 struct Watch {
     said: Vec<String>,
     enough: u64,
-    quit: Arc<AtomicBool>,
+    seen: Arc<Seen>,
 }
 
 impl Face for Watch {
@@ -70,18 +85,17 @@ impl Face for Watch {
     }
 
     fn show(&mut self, view: &View) -> Result<(), Error> {
-        if view.samples[0] >= self.enough {
-            self.quit.store(true, Ordering::SeqCst);
-        }
+        self.seen.samples.store(view.samples[0], Ordering::SeqCst);
         Ok(())
     }
 
     fn say(&mut self, sentence: &str) {
+        self.seen.opened.fetch_add(u64::from(sentence.ends_with("is back")), Ordering::SeqCst);
         self.said.push(sentence.to_owned());
     }
 
     fn key(&mut self) -> Option<Key> {
-        self.quit.load(Ordering::SeqCst).then_some(Key::Quit)
+        (self.seen.samples.load(Ordering::SeqCst) >= self.enough).then_some(Key::Quit)
     }
 }
 
@@ -103,13 +117,12 @@ impl Sink for Full {
 }
 
 /// Runs until `enough` samples came from `address`.
-fn follow(address: &Address, enough: u64, keep: Keep) -> (View, Vec<String>) {
-    let (view, said, ended) = run(address, enough, keep);
-    assert_eq!(ended.unwrap(), Ended::Quit);
-    (view, said)
-}
-
-fn run(address: &Address, enough: u64, keep: Keep) -> (View, Vec<String>, Result<Ended, Error>) {
+fn run(
+    address: &Address,
+    enough: u64,
+    keep: Keep,
+    seen: Arc<Seen>,
+) -> (View, Vec<String>, Result<Ended, Error>) {
     let how = How { baud: Some(115_200), ..How::default() };
     let live = Live {
         session: Session::new("it", &Options::default()),
@@ -119,7 +132,8 @@ fn run(address: &Address, enough: u64, keep: Keep) -> (View, Vec<String>, Result
         goal: Goal::default(),
         save: &mut |_| Ok(String::new()),
     };
-    let mut watch = Watch { said: Vec::new(), enough, quit: Arc::default() };
+    seen.opened.store(1, Ordering::SeqCst);
+    let mut watch = Watch { said: Vec::new(), enough, seen };
     let (view, ended) = live.run(&mut watch);
     (view, watch.said, ended)
 }
@@ -147,24 +161,25 @@ fn a_device_that_hangs_up_is_waited_for_and_the_time_is_a_gap() {
     let link = folder.path().join("tty");
     let raw = folder.path().join("raw");
     let (ours, theirs) = terminal(&link);
-    let there = link.clone();
+    let (there, seen) = (link.clone(), Arc::new(Seen::default()));
+    let its = seen.clone();
     let sender = std::thread::spawn(move || {
-        // Opened by the session by now: nothing is lost to a mode that is not raw yet.
-        std::thread::sleep(Duration::from_millis(300));
+        // What comes before it is opened is thrown away.
+        wait_for(&its.opened, 1);
         ours.write_all(b"noise\n").unwrap();
         send(&ours, 0..3000);
         // All is read before the line is cut.
-        std::thread::sleep(Duration::from_millis(500));
+        wait_for(&its.samples, 3000);
         drop((ours, theirs));
-        std::thread::sleep(Duration::from_millis(300));
         let (ours, theirs) = terminal(&there);
-        std::thread::sleep(Duration::from_millis(800));
+        wait_for(&its.opened, 2);
         send(&ours, 3500..6500);
         (ours, theirs)
     });
     let keep = Keep { raw: Some(Output::growing(&raw).unwrap()), ..Keep::default() };
-    let (view, said) = follow(&Address::Serial(link), 6000, keep);
+    let (view, said, ended) = run(&Address::Serial(link), 6000, keep, seen);
     let _ends = sender.join().unwrap();
+    assert_eq!(ended.unwrap(), Ended::Quit);
     let noise = view.snapshot.calibration.gyroscope.unwrap();
     assert_eq!(
         (noise.stamps.samples, noise.stamps.missing, noise.stamps.gap_count),
@@ -190,7 +205,7 @@ fn a_recording_that_cannot_be_written_is_given_up_and_the_measurement_goes_on() 
         stream
     });
     let keep = Keep { record: Some(Box::new(Full)), ..Keep::default() };
-    let (view, said, ended) = run(&address, 6000, keep);
+    let (view, said, ended) = run(&address, 6000, keep, Arc::default());
     let _stream = sender.join().unwrap();
     assert_eq!(view.samples[0], 6000);
     assert_eq!(said, ["warning: the disk is full; the session goes on without it"]);
@@ -208,9 +223,39 @@ fn a_connection_that_closes_is_opened_again() {
             stream.write_all(text.as_bytes()).unwrap();
         }
     });
-    let (view, said) = follow(&address, 6000, Keep::default());
+    let (view, said, ended) = run(&address, 6000, Keep::default(), Arc::default());
     sender.join().unwrap();
+    assert_eq!(ended.unwrap(), Ended::Quit);
     let noise = view.snapshot.calibration.gyroscope.unwrap();
     assert_eq!((noise.stamps.samples, noise.stamps.missing), (6000, 1000));
     assert!(said[0].contains("the connection was closed"), "{said:?}");
+}
+
+#[test]
+fn a_port_where_nothing_comes_is_told_of_once_and_when_it_sends_again() {
+    let mut watch = Watch { said: Vec::new(), enough: u64::MAX, seen: Arc::default() };
+    let mut link = Link { name: "it".into(), ..Link::default() };
+    let piece = |bytes: &[u8]| Arrival::Bytes { arrival_ns: 0, bytes: bytes.to_vec() };
+    let mut heard = Heard { at: Instant::now(), patience: Duration::ZERO };
+    // A port that is open hands on empty pieces; one that went away was told of.
+    heard.note(&piece(b""), &mut link, &mut watch);
+    link.gone = Some("unplugged".into());
+    heard.look(&mut link, &mut watch);
+    assert_eq!((watch.said.len(), link.silent_s), (0, None));
+    link.gone = None;
+    for _ in 0..3 {
+        heard.look(&mut link, &mut watch);
+    }
+    assert_eq!(
+        watch.said,
+        ["it: nothing came for 0 s: see that the sensor has power and sends by itself"]
+    );
+    assert!(link.silent_s.is_some());
+    heard.note(&piece(b"1"), &mut link, &mut watch);
+    assert_eq!(watch.said[1..], ["it sends again, after 0 s of silence"]);
+    assert_eq!(link.silent_s, None);
+    // Of a sensor that is merely slow it is told once.
+    heard.patience = heard.at.elapsed() + SILENCE;
+    heard.look(&mut link, &mut watch);
+    assert_eq!(watch.said.len(), 2);
 }

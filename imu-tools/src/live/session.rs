@@ -174,6 +174,17 @@ impl Session {
         self.running.push(block);
     }
 
+    /// Leaves out of a block what comes once the session is `span_s` long: a recording comes in large blocks.
+    pub fn end_at(&self, span_s: f64, block: &mut Block) {
+        let Some(first_ns) = self.kept.first_ns.or(block.first_ns()) else { return };
+        let end_ns = first_ns.saturating_add((span_s * 1e9).round() as i64);
+        for list in [&mut block.gyroscope, &mut block.accelerometer] {
+            let end = list.iter().position(|sample| sample.stamp_ns >= end_ns);
+            list.truncate(end.map_or(list.len(), |end| end + 1));
+        }
+        block.temperature.retain(|temperature| temperature.stamp_ns <= end_ns);
+    }
+
     /// Leaves out what came before the session went on.
     fn pass_over(&mut self, block: &mut Block) {
         let [gyroscope, accelerometer, temperature] = &mut self.skip;
@@ -380,6 +391,18 @@ mod tests {
             let span_s = if from == 100 { 9.998 } else { 10.999 };
             assert!((second.span_s() - span_s).abs() < 1e-9, "{}", second.span_s());
         }
+    }
+
+    #[test]
+    fn a_session_ends_at_the_first_sample_that_makes_it_long_enough() {
+        let mut session = Session::new("it", &Options::default());
+        for from in [0, 4000] {
+            let mut block = block(from..from + 4000);
+            session.end_at(4.9995, &mut block);
+            session.take(&mut block);
+        }
+        assert_eq!(session.samples(), [5001, 0]);
+        assert!((session.span_s() - 5.0).abs() < 1e-9, "{}", session.span_s());
     }
 
     #[test]

@@ -155,7 +155,10 @@ impl Clock {
         self.release(&mut to);
         match &mut self.track {
             Some(track) if track.source() == Source::Ticks => track.reopened(),
-            _ => self.before = self.track.take().or(self.before.take()),
+            _ => {
+                self.before = self.track.take().or(self.before.take());
+                self.before.iter_mut().for_each(Track::reopened);
+            }
         }
     }
 

@@ -176,6 +176,25 @@ fn what_waited_for_seconds_begins_anew_a_few_times() {
     assert!(status.lost == 0 && status.restarts <= 3, "{status:?}");
 }
 
+/// A device may hand over at once what it gathered while the port was closed, or all that it lost power with.
+#[test]
+fn a_port_that_was_opened_again_begins_anew_without_a_clock() {
+    for (reopened, restarts) in [(false, 0), (true, 1)] {
+        let (mut clock, mut all) = (Clock::default(), Vec::new());
+        for k in 0..8000_i64 {
+            if reopened && k == 4000 {
+                clock.reopened(|_, taken| all.push(taken));
+            }
+            let sent = k * 10 * MS;
+            let waited = (40_000 * MS..43_000 * MS).contains(&sent);
+            let at = if waited { 43_000 * MS } else { read(sent) };
+            clock.take(at, &Message::default(), |_, taken| all.push(taken));
+        }
+        assert_eq!(clock.status().restarts, restarts);
+        assert!(all.windows(2).all(|w| w[0].stamp_ns < w[1].stamp_ns));
+    }
+}
+
 #[test]
 fn a_sensor_that_pauses_without_a_clock_leaves_one_gap() {
     for pause in [700, 3000, 9000] {

@@ -267,7 +267,7 @@ impl Track {
         unit_ns * if same { stride } else { units }
     }
 
-    /// The port was opened again: the next message must show that the sensor went on.
+    /// The port was opened again: the next message must show that the sensor went on; the mere arrivals do not.
     pub fn reopened(&mut self) {
         self.reopened = true;
     }
@@ -317,7 +317,8 @@ impl Track {
             return false;
         };
         let silence = first_ns.saturating_sub(self.last_arrival_ns);
-        if self.source != Source::Arrival || self.lost_track || silence >= LOST_TRACK_NS {
+        let unconnected = self.lost_track || self.reopened || silence >= LOST_TRACK_NS;
+        if self.source != Source::Arrival || unconnected {
             return false;
         }
         let elapsed = last_ns.saturating_sub(*first_ns) as f64;

@@ -94,6 +94,9 @@ impl Address {
         if text == "auto" {
             return serial::only_one().map(Self::Serial);
         }
+        if text.is_empty() {
+            return Err(serial::unnamed());
+        }
         let path = Path::new(text);
         match fs::metadata(path) {
             Ok(there) if there.is_dir() || there.is_file() => Ok(Self::Recording(path.to_owned())),

@@ -5,6 +5,8 @@ use std::net::{TcpStream, ToSocketAddrs as _};
 use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 
+use socket2::{SockRef, TcpKeepalive};
+
 use super::Arrival;
 use super::again::{self, Again};
 use crate::error::Error;
@@ -13,12 +15,21 @@ use crate::error::Error;
 const PATIENCE: Duration = Duration::from_secs(5);
 const PAUSE: Duration = Duration::from_millis(500);
 
+/// A peer that is silent for so long is asked, so often, whether it is still there: one that lost power says
+/// nothing, and with the third question unanswered it is gone.
+const ASKED_AFTER: Duration = Duration::from_secs(10);
+const ASKED_EVERY: Duration = Duration::from_secs(5);
+const ASKED: u32 = 3;
+
 fn connect(address: &str) -> io::Result<TcpStream> {
     let mut last = io::Error::from(io::ErrorKind::NotFound);
     for address in address.to_socket_addrs()? {
         match TcpStream::connect_timeout(&address, PATIENCE) {
             Ok(stream) => {
                 stream.set_read_timeout(Some(PAUSE))?;
+                let asked = TcpKeepalive::new().with_time(ASKED_AFTER);
+                let asked = asked.with_interval(ASKED_EVERY).with_retries(ASKED);
+                SockRef::from(&stream).set_tcp_keepalive(&asked)?;
                 return Ok(stream);
             }
             Err(error) => last = error,

@@ -59,6 +59,11 @@ pub(super) fn only_one() -> Result<PathBuf, Error> {
     }
 }
 
+/// Nothing is named.
+pub(super) fn unnamed() -> Error {
+    Error::usage(format!("no port is named: {}", list()))
+}
+
 /// Nothing is called so.
 pub(super) fn no_such(name: &str) -> Error {
     Error::data(format!("there is no port or recording {name}: {}", list()))

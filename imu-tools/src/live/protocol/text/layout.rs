@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::Pointed;
 use crate::recording::csv::celsius::Celsius;
 use crate::recording::csv::columns::{Column, Columns};
 use crate::recording::csv::dialect::Dialect;
@@ -192,15 +193,9 @@ impl Triple {
 
 /// The number in a field, without memory of its own.
 pub fn value(dialect: Dialect, field: &[u8]) -> Option<f64> {
-    /// Longer numbers with a decimal comma are none.
-    const LONGEST: usize = 48;
-    if !dialect.decimal_comma {
-        return number::value(field);
+    if dialect.decimal_comma {
+        number::value(Pointed::of(field)?.get())
+    } else {
+        number::value(field)
     }
-    let mut pointed = [0; LONGEST];
-    let place = pointed.get_mut(..field.len())?;
-    for (to, from) in place.iter_mut().zip(field) {
-        *to = if *from == b',' { b'.' } else { *from };
-    }
-    number::value(place)
 }

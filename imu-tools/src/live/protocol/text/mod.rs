@@ -68,7 +68,7 @@ impl Text {
 
     /// What a line without its end is.
     fn line<'a>(&self, line: &'a [u8]) -> Line<'a> {
-        let line = line.trim_ascii();
+        let line = trim(line);
         if matches!(line.first(), None | Some(b'#' | b'%')) && self.header(line).is_none() {
             return if line.iter().any(|byte| byte.is_ascii_control() && *byte != b'\t') {
                 Line::Other
@@ -165,6 +165,47 @@ impl Wire for Text {
 
     fn learnt(&self) -> Option<&str> {
         self.learnt.as_deref()
+    }
+}
+
+/// A line without blanks at its ends, and without the NULs that programs in C may send there.
+fn trim(mut line: &[u8]) -> &[u8] {
+    let is_blank = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0;
+    while let [first, rest @ ..] = line
+        && is_blank(first)
+    {
+        line = rest;
+    }
+    while let [rest @ .., last] = line
+        && is_blank(last)
+    {
+        line = rest;
+    }
+    line
+}
+
+/// A number as it was written, with a point where it has a comma.
+#[derive(Clone, Copy)]
+struct Pointed {
+    bytes: [u8; Self::LONGEST],
+    length: usize,
+}
+
+impl Pointed {
+    /// Longer ones are none.
+    const LONGEST: usize = 48;
+    const EMPTY: Self = Self { bytes: [0; Self::LONGEST], length: 0 };
+
+    fn of(written: &[u8]) -> Option<Self> {
+        let mut pointed = Self { length: written.len(), ..Self::EMPTY };
+        for (to, from) in pointed.bytes.get_mut(..written.len())?.iter_mut().zip(written) {
+            *to = if *from == b',' { b'.' } else { *from };
+        }
+        Some(pointed)
+    }
+
+    fn get(&self) -> &[u8] {
+        self.bytes.get(..self.length).unwrap_or_default()
     }
 }
 

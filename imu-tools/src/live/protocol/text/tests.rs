@@ -68,6 +68,14 @@ fn the_unit_of_time_is_learnt_from_its_spacing() {
     assert_eq!(messages[16].ticks.unwrap().value, 85_000 * 1_000);
 }
 
+/// Programs in C send the end of a string with it.
+#[test]
+fn nuls_at_the_ends_of_lines_are_blanks() {
+    let messages = read("gx,gy,gz,ax,ay,az\r\n\0 1,2,3,4,5,6\0\r\n\0\0 1,2,3,\0 4,5,6\r\n");
+    assert_eq!(messages.len(), 1);
+    assert_eq!(messages[0].accelerometer, Some([4.0, 5.0, 6.0]));
+}
+
 #[test]
 fn damaged_lines_are_left_out_whole() {
     let header = "gx,gy,gz,ax,ay,az\n";

@@ -4,6 +4,7 @@
 //! yet. A count of whole milliseconds or microseconds that stayed below 2³² is taken for one of 32 bits,
 //! which is what `millis()` and `micros()` of small boards are.
 
+use super::Pointed;
 use super::layout::Time;
 use crate::live::Ticks;
 use crate::recording::TimeUnit;
@@ -11,17 +12,14 @@ use crate::recording::csv::{number, time_unit};
 
 /// Times from which the unit is told.
 const LEARNT_FROM: usize = 16;
-/// Bytes of such a time.
-const LONGEST: usize = 32;
 
 const NANOSECOND: u64 = 1_000_000_000;
 
 /// A clock that lines show.
 pub struct Clock {
     unit: Option<TimeUnit>,
-    /// The first times as they were written.
-    first: [[u8; LONGEST]; LEARNT_FROM],
-    lengths: [usize; LEARNT_FROM],
+    /// The first times.
+    first: [Pointed; LEARNT_FROM],
     seen: usize,
     /// A time was beyond 32 bits, or in parts of a unit.
     is_wide: bool,
@@ -30,13 +28,7 @@ pub struct Clock {
 impl Clock {
     /// Of this unit, if it is told.
     pub fn new(unit: Option<TimeUnit>) -> Self {
-        Self {
-            unit,
-            first: [[0; LONGEST]; LEARNT_FROM],
-            lengths: [0; LEARNT_FROM],
-            seen: 0,
-            is_wide: false,
-        }
+        Self { unit, first: [Pointed::EMPTY; LEARNT_FROM], seen: 0, is_wide: false }
     }
 
     /// The ticks at a line's time, once its unit is known.
@@ -63,32 +55,19 @@ impl Clock {
 
     /// Keeps one of the first times, and finds the unit when there are enough.
     fn learn(&mut self, written: &[u8]) {
-        let (Some(place), Some(length)) =
-            (self.first.get_mut(self.seen), self.lengths.get_mut(self.seen))
+        let (Some(place), Some(time)) = (self.first.get_mut(self.seen), Pointed::of(written))
         else {
             return;
         };
-        *length = written.len().min(LONGEST);
-        for (to, from) in place.iter_mut().zip(written) {
-            *to = if *from == b',' { b'.' } else { *from };
-        }
+        *place = time;
         self.seen += 1;
         if self.seen == LEARNT_FROM {
-            let mut times: [&[u8]; LEARNT_FROM] = [&[]; LEARNT_FROM];
-            for ((time, text), length) in times.iter_mut().zip(&self.first).zip(self.lengths) {
-                *time = text.get(..length).unwrap_or_default();
-            }
-            self.unit = Some(time_unit::from_data(&times));
+            self.unit = Some(time_unit::from_data(&self.first.each_ref().map(Pointed::get)));
         }
     }
 }
 
 /// Nanoseconds of a number of units with a decimal point or comma.
 fn nanoseconds(written: &[u8], unit: TimeUnit) -> Option<i64> {
-    let mut pointed = [0; LONGEST];
-    let place = pointed.get_mut(..written.len())?;
-    for (to, from) in place.iter_mut().zip(written) {
-        *to = if *from == b',' { b'.' } else { *from };
-    }
-    number::nanoseconds(place, unit.exponent())
+    number::nanoseconds(Pointed::of(written)?.get(), unit.exponent())
 }
