@@ -269,10 +269,14 @@ fn what_cannot_be_is_one_sentence() {
             1,
             "there is no checkpoint",
         ),
+        (&["live", "-", "--raw", "q", "--record", "q"], 2, "--record and --raw name the same"),
+        (&["live", ""], 2, "no port is named"),
+        (&["live", text(&path), "--raw", "q"], 2, "--raw is for bytes of a sensor, and"),
+        (&["live", "-", "--speed", "2"], 2, "--speed is for a recording, and the pipe is none"),
         (
-            &["live", text(&path), "--raw", "q", "--record", "q"],
+            &["live", "-", "--protocol", "xsens", "--gyro-unit", "deg/s"],
             2,
-            "--record and --raw name the same",
+            "--gyro-unit is for lines of text, and xsens tells that itself",
         ),
         (
             &["live", text(&path), "--fresh", "--checkpoint", text(&path)],
