@@ -80,12 +80,6 @@ impl Place {
     /// # Errors
     /// When the disk is full or the folder cannot be written; then the one before is still there.
     pub fn write(&mut self, payload: &[u8]) -> Result<(), Error> {
-        let mut bytes = Vec::with_capacity(HEADER + payload.len() + CRC);
-        bytes.extend_from_slice(MAGIC);
-        bytes.extend_from_slice(&VERSION.to_le_bytes());
-        bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
-        bytes.extend_from_slice(payload);
-        bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
         let path = self.path.clone();
         let (refused, part) = (refused(&path), beside(&path, ".part"));
         if !self.is_part {
@@ -93,13 +87,22 @@ impl Place {
             lock(&next, &path)?;
             (self.locked, self.is_part) = (next, true);
         }
-        self.put(&part, &bytes).map_err(refused)
+        self.put(&part, payload).map_err(refused)
     }
 
-    fn put(&mut self, part: &Path, bytes: &[u8]) -> io::Result<()> {
+    fn put(&mut self, part: &Path, payload: &[u8]) -> io::Result<()> {
+        let mut header = Vec::with_capacity(HEADER);
+        header.extend_from_slice(MAGIC);
+        header.extend_from_slice(&VERSION.to_le_bytes());
+        header.extend_from_slice(&(payload.len() as u64).to_le_bytes());
+        let mut crc = crc32fast::Hasher::new();
+        crc.update(&header);
+        crc.update(payload);
         self.locked.set_len(0)?;
         self.locked.rewind()?;
-        self.locked.write_all(bytes)?;
+        self.locked.write_all(&header)?;
+        self.locked.write_all(payload)?;
+        self.locked.write_all(&crc.finalize().to_le_bytes())?;
         self.locked.sync_all()?;
         if self.path.exists() {
             fs::rename(&self.path, beside(&self.path, ".previous"))?;

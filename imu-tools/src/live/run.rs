@@ -21,7 +21,7 @@ const LULL: Duration = Duration::from_millis(20);
 const FLUSH: Duration = Duration::from_secs(1);
 
 /// The time between views is this many times what a view takes, at least.
-const REST: u32 = 100;
+const REST: u32 = 200;
 
 /// The goal is looked at whenever the record has grown by this part, whatever the time on the wall.
 const GROWTH: f64 = 1.02;

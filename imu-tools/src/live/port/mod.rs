@@ -13,7 +13,7 @@ mod serial;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use crate::error::Error;
 use crate::recording::{Block, Note, ReadOptions, SampleKind};
@@ -27,6 +27,11 @@ const BLOCKS_AHEAD: usize = 4;
 
 /// Bytes of a piece, at most.
 const PIECE: usize = 4096;
+
+/// After a piece of so many bytes the next ones are gathered for so long: they are of a fast sensor, and to be
+/// woken for each would cost more than all else.
+const MANY: usize = 256;
+const GATHERED: Duration = Duration::from_millis(4);
 
 /// What comes out of a port.
 #[derive(Debug)]
@@ -204,7 +209,10 @@ fn pump(
     use std::io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
     let mut buffer = [0; PIECE];
     loop {
-        let bytes = match read(&mut buffer) {
+        let read = read(&mut buffer);
+        // Where the buffer is full more waits already.
+        let gather = read.as_ref().is_ok_and(|n| (MANY..PIECE).contains(n));
+        let bytes = match read {
             Ok(0) => return Some(Ok(())),
             Ok(n) => buffer.get(..n).unwrap_or_default().to_vec(),
             Err(e) if matches!(e.kind(), Interrupted | TimedOut | WouldBlock) => Vec::new(),
@@ -213,6 +221,9 @@ fn pump(
         // An empty piece asks whether somebody listens still.
         if to.send(Arrival::Bytes { arrival_ns: clock.now_ns(), bytes }).is_err() {
             return None;
+        }
+        if gather {
+            std::thread::sleep(GATHERED);
         }
     }
 }
