@@ -68,7 +68,6 @@ struct Kept<'a> {
 }
 
 /// Megabytes byte by byte would take a fifth of a checkpoint's time.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde hands it")]
 fn as_a_whole<S: serde::Serializer>(bytes: &&[u8], to: S) -> Result<S::Ok, S::Error> {
     to.serialize_bytes(bytes)
 }
