@@ -377,10 +377,16 @@ struct Heard {
 }
 
 impl Heard {
-    /// Notes that something came, if it did: a port that is open hands on empty pieces, too.
+    /// Notes that something came, if it did: a port that is open hands on empty pieces, too. That it went away
+    /// is told elsewhere.
     fn note(&mut self, arrival: &Arrival, link: &mut Link, face: &mut dyn Face) {
-        if matches!(arrival, Arrival::Bytes { bytes, .. } if bytes.is_empty()) {
-            return;
+        match arrival {
+            Arrival::Bytes { bytes, .. } if !bytes.is_empty() => {}
+            Arrival::Gone(_) | Arrival::Back => {
+                (self.at, link.silent_s) = (Instant::now(), None);
+                return;
+            }
+            _ => return,
         }
         if let Some(silent_s) = link.silent_s.take() {
             face.say(&format!("{} sends again, after {silent_s:.0} s of silence", link.name));

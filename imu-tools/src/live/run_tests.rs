@@ -239,6 +239,8 @@ fn a_port_where_nothing_comes_is_told_of_once_and_when_it_sends_again() {
     let mut heard = Heard { at: Instant::now(), patience: Duration::ZERO };
     // A port that is open hands on empty pieces; one that went away was told of.
     heard.note(&piece(b""), &mut link, &mut watch);
+    link.silent_s = Some(12.0);
+    heard.note(&Arrival::Gone("unplugged".into()), &mut link, &mut watch);
     link.gone = Some("unplugged".into());
     heard.look(&mut link, &mut watch);
     assert_eq!((watch.said.len(), link.silent_s), (0, None));

@@ -238,8 +238,8 @@ impl Clock {
         to: &mut impl FnMut(&Message, Taken),
     ) {
         let Some(track) = &mut self.track else { return };
-        let interval_s = track.interval_ns(&next) * 1e-9;
         track.pass(arrival_ns, next.units);
+        let interval_s = track.interval_ns(&next) * 1e-9;
         let least = self.last_stamp.map_or(i64::MIN, |last| last.saturating_add(1));
         let stamp_ns = track.stamp().max(least);
         self.last_stamp = Some(stamp_ns);

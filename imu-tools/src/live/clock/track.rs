@@ -257,7 +257,7 @@ impl Track {
         self.origin_ns.saturating_add(line.round() as i64)
     }
 
-    /// Host time that the sensor took for a message, ns.
+    /// Host time that the sensor took for the message that was passed on to last, ns.
     pub fn interval_ns(&self, next: &Next) -> f64 {
         let unit_ns = self.unit_ns * (1.0 + 1e-9 * self.drift);
         let stride = self.mean_stride();
