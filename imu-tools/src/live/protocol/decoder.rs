@@ -44,7 +44,7 @@ impl Decoder {
     }
 
     /// Takes bytes in; messages go to `each` as soon as they are whole. Nothing is allocated, except where
-    /// lines of text have a header.
+    /// lines of text have letters, which may be a header.
     pub fn feed(&mut self, bytes: &[u8], each: &mut dyn FnMut(Message)) {
         self.stream.feed(bytes, each);
     }
