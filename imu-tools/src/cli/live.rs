@@ -167,7 +167,7 @@ impl Live {
                 .map(|path| recording::grow(&path))
                 .transpose()?,
             raw: self.raw.as_deref().map(free).map(|path| Output::growing(&path)).transpose()?,
-            lost: Vec::new(),
+            ..Keep::default()
         };
         let within = self.until.unwrap_or(WITHIN);
         let every = Duration::from_secs_f64(self.every);
@@ -180,16 +180,12 @@ impl Live {
             Box::new(Screen::open(within)?)
         };
         let mut save = |view: &View| {
+            let Some(folder) = &self.results.output else { return Ok(None) };
             if let Some(refusal) = &view.snapshot.refusal {
                 return Err(Error::data(refusal.to_string()));
             }
             self.results.write(&view.snapshot.calibration)?;
-            Ok(match &self.results.output {
-                Some(folder) => {
-                    format!("saved: checkpoint, and the results in {}", folder.display())
-                }
-                None => "saved: checkpoint".into(),
-            })
+            Ok(Some(folder.display().to_string()))
         };
         let goal = Goal { within: self.until, span_s: self.span };
         let live = run::Live { session, port, decode, keep, goal, save: &mut save };

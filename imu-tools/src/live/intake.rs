@@ -2,13 +2,14 @@
 //!
 //! The first bytes are kept until they show the protocol, and are then read as if they came now. Bytes
 //! of which hardly any is part of a message end the session with a sentence: a wrong baud rate, or a
-//! protocol that is none of ours.
+//! protocol that is none of ours. Where samples came before, that is told of, and the session goes on.
 
 use super::clock::{Clock, Source};
 use super::link::{Link, LinkClock};
 use super::protocol::{Decoder, Protocol, candidate, candidates, recognise};
 use super::rates::rates;
 use super::run::{Decode, Step};
+use super::stretch::{Amiss, Stretch};
 use super::{Kind, Message, shown};
 use crate::error::Error;
 use crate::recording::{Block, ReadOptions, SampleKind, Temperature};
@@ -17,21 +18,13 @@ use crate::recording::{Block, ReadOptions, SampleKind, Temperature};
 const TRIED: usize = 512;
 const ENOUGH: usize = 8192;
 
-/// Bytes after which a stream of refused ones is given up.
-const PATIENCE: u64 = 16_384;
-
-/// The part of them that is too many.
-const TOO_MANY: f64 = 0.95;
-
-/// Bytes without a sample after which a stream of whole frames is given up.
-const FRUITLESS: u64 = 65_536;
-
 /// From bytes to samples.
 pub struct Intake {
     name: String,
     options: ReadOptions,
     state: State,
     clock: Clock,
+    stretch: Stretch,
     /// When the latest bytes came.
     latest_ns: i64,
 }
@@ -82,8 +75,14 @@ impl Intake {
             Some(protocol) => State::Known(decoder(protocol, options)?),
             None => State::Unknown { first: Vec::new(), pieces: Vec::new(), tried: 0 },
         };
-        let clock = Clock::default();
-        Ok(Self { name: name.to_owned(), options: options.clone(), state, clock, latest_ns: 0 })
+        Ok(Self {
+            name: name.to_owned(),
+            options: options.clone(),
+            state,
+            clock: Clock::default(),
+            stretch: Stretch::default(),
+            latest_ns: 0,
+        })
     }
 
     /// Looks which protocol the first bytes speak, and reads them then.
@@ -134,21 +133,19 @@ impl Decode for Intake {
             }
             State::Known(decoder) => {
                 decode(decoder, &mut self.clock, arrival_ns, bytes, to);
-                let tally = decoder.tally();
-                if tally.bytes > PATIENCE && tally.share_refused() > TOO_MANY {
-                    return Err(Error::data(format!(
-                        "{:.0} % of the bytes of {} are no {}: the baud rate is wrong (see --baud), or \
-                         the protocol is (see --protocol); the latest bytes are {}",
-                        100.0 * tally.share_refused(),
-                        self.name,
-                        decoder.protocol(),
+                self.stretch.look(decoder.tally());
+                let (name, protocol) = (&self.name, decoder.protocol());
+                match self.stretch.amiss() {
+                    Some(_) if self.stretch.had_samples() => Ok(()),
+                    Some(Amiss::Refused(share)) => Err(Error::data(format!(
+                        "{:.0} % of the bytes of {name} are no {protocol}: the baud rate is wrong (see \
+                         --baud), or the protocol is (see --protocol); the latest bytes are {}",
+                        100.0 * share,
                         shown::bytes(bytes)
-                    )));
+                    ))),
+                    Some(Amiss::Fruitless(bytes)) => Err(fruitless(name, protocol, bytes)),
+                    None => Ok(()),
                 }
-                if tally.bytes > FRUITLESS && tally.messages == 0 {
-                    return Err(fruitless(&self.name, decoder.protocol(), tally.bytes));
-                }
-                Ok(())
             }
         }
     }
@@ -181,6 +178,19 @@ impl Decode for Intake {
         link.learnt = decoder.learnt().map(str::to_owned);
         (link.bytes, link.refused) = (tally.bytes, tally.refused);
         (link.bad_checksums, link.messages) = (tally.damaged, tally.messages);
+        link.amiss = self.stretch.amiss().map(|amiss| {
+            let protocol = decoder.protocol();
+            match amiss {
+                Amiss::Refused(_) => format!(
+                    "hardly any byte is {protocol} any more: has the sensor another baud rate now?"
+                ),
+                Amiss::Fruitless(_) => {
+                    format!(
+                        "{protocol} comes, and in it no sample any more: what is it set to send?"
+                    )
+                }
+            }
+        });
         let status = self.clock.status();
         link.clock = (status.rate_hz > 0.0).then_some(LinkClock {
             by_arrival: status.source == Source::Arrival,

@@ -118,6 +118,32 @@ fn a_checkpoint_while_samples_are_held_back_is_resumed_with_a_gap_and_no_sample_
     assert!(stamps.missing.abs_diff(2000) <= 16, "{stamps:?}");
 }
 
+/// A device that was found at its rate, and is back at another: the session does not end of it.
+#[test]
+fn bytes_that_are_refused_later_are_told_of_until_others_come() {
+    let options = ReadOptions::default();
+    let noise: Vec<u8> =
+        (0..40_000_u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+    let mut intake = Intake::new("it", Some(Protocol::ImuFrame), &options).unwrap();
+    let error = intake.feed(0, &noise, &mut Vec::new()).unwrap_err().to_string();
+    assert!(
+        error.contains("of the bytes of it are no imu-frame: the baud rate is wrong"),
+        "{error}"
+    );
+    let mut intake = Intake::new("it", Some(Protocol::ImuFrame), &options).unwrap();
+    let (mut link, mut steps) = (Link::default(), Vec::new());
+    feed(&mut intake, 0..5008, 0, &mut steps);
+    for (is_noise, amiss) in [(false, false), (true, true), (false, false)] {
+        if is_noise {
+            intake.feed(7_000_000_000, &noise, &mut steps).unwrap();
+        } else {
+            feed(&mut intake, 12_000..17_008, 0, &mut steps);
+        }
+        intake.tell(&mut link);
+        assert_eq!(link.amiss.is_some(), amiss, "{link:?}");
+    }
+}
+
 /// What `intake` says of pieces that came at these times, ns.
 fn heard<'a>(
     intake: &mut Intake,

@@ -13,6 +13,8 @@ pub struct Link {
     pub gone: Option<String>,
     /// The port is there, and for so long nothing came, s.
     pub silent_s: Option<f64>,
+    /// What is wrong with what comes now, though samples came before.
+    pub amiss: Option<String>,
     /// Bytes that came.
     pub bytes: u64,
     /// Bytes of them that were part of no valid frame.

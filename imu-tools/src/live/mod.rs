@@ -19,5 +19,6 @@ pub mod screen;
 pub mod session;
 mod shown;
 pub mod simulated;
+mod stretch;
 
 pub use message::{Count, Kind, Message, Ticks};

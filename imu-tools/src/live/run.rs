@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::checkpoint::Place;
 use super::goal::Goal;
 use super::link::Link;
-use super::port::{Arrival, Port};
+use super::port::{self, Arrival, Port};
 use super::session::{Session, View};
 use crate::error::Error;
 use crate::output::{Output, end_is_asked};
@@ -28,6 +28,9 @@ const GROWTH: f64 = 1.02;
 
 /// Nothing came for so long: the user is told. Of a sensor that is merely slow, once.
 const SILENCE: Duration = Duration::from_secs(10);
+
+/// What POSIX calls the signal of Ctrl-C.
+const SIGINT: i32 = 2;
 
 /// What became of bytes.
 #[derive(Debug)]
@@ -70,6 +73,8 @@ pub enum Key {
     Mark,
     /// End with the report.
     Quit,
+    /// End as the signal does that a terminal sends at Ctrl-C.
+    Interrupt,
 }
 
 /// Who shows a session to the user.
@@ -116,16 +121,25 @@ pub struct Keep {
     pub raw: Option<Output>,
     /// What could not be kept: the session goes on without it.
     pub lost: Vec<Error>,
+    /// Why the latest checkpoint could not be written, if so: it is tried again.
+    pub unwritten: Option<String>,
 }
 
 impl Keep {
-    fn checkpoint(&mut self, session: &Session, ended: bool) -> Result<(), Error> {
+    /// Writes a checkpoint, if there is to be one; whether there is.
+    fn checkpoint(&mut self, session: &Session, ended: bool) -> Result<bool, Error> {
         match &mut self.checkpoint {
             // There is nothing to go on with.
-            Some(_) if session.samples() == [0, 0] => Ok(()),
-            Some((place, _)) => place.write(&session.to_bytes(ended)?),
-            None => Ok(()),
+            Some(_) if session.samples() == [0, 0] => Ok(false),
+            Some((place, _)) => place.write(&session.to_bytes(ended)?).map(|()| true),
+            None => Ok(false),
         }
+    }
+
+    /// All that is not kept now, in words.
+    fn troubles(&self) -> Vec<String> {
+        let lost = self.lost.iter().map(|error| format!("recorded no longer: {error}"));
+        lost.chain(self.unwritten.iter().map(|why| format!("no checkpoint: {why}"))).collect()
     }
 
     /// Writes to the recording, if there is one; one that cannot be written is given up, and stays as it is.
@@ -174,8 +188,8 @@ pub struct Live<'a> {
     pub keep: Keep,
     /// When it is enough.
     pub goal: Goal,
-    /// What is done when the user saves, beside a checkpoint.
-    pub save: &'a mut dyn FnMut(&View) -> Result<String, Error>,
+    /// What is done when the user saves, beside a checkpoint; where it went, if there is a place.
+    pub save: &'a mut dyn FnMut(&View) -> Result<Option<String>, Error>,
 }
 
 impl Live<'_> {
@@ -183,8 +197,10 @@ impl Live<'_> {
     /// could not be written. Whatever ends it, checkpoint and recordings are complete.
     pub fn run(mut self, face: &mut dyn Face) -> (View, Result<Ended, Error>) {
         let mut link = Link { name: self.port.name.clone(), ..Link::default() };
-        let mut told = None;
-        let followed = self.follow(face, &mut link, &mut told);
+        let mut told = Told::default();
+        let followed = self
+            .follow(face, &mut link, &mut told)
+            .and_then(|ended| self.empty(ended, face, &mut link).map(|()| ended));
         let mut steps = Vec::new();
         let last = self.decode.as_mut().map_or(Ok(()), |decode| decode.finish(&mut steps));
         self.proceed(steps);
@@ -192,7 +208,7 @@ impl Live<'_> {
         if let Some(decode) = &self.decode {
             decode.tell(&mut link);
         }
-        say_learnt(&link, &mut told, face);
+        told.tell(&link, face);
         let over = matches!(ended, Ok(Ended::Goal | Ended::Input | Ended::Quit));
         let kept = self.keep.checkpoint(&self.session, over);
         let closed = self.keep.close();
@@ -200,16 +216,29 @@ impl Live<'_> {
         (self.session.view(&link), ended)
     }
 
-    /// `told` is what the user was told of the stream.
+    /// Takes what waits of a sensor that the user ended: it came before. A recording is not read to its end.
+    fn empty(&mut self, ended: Ended, face: &mut dyn Face, link: &mut Link) -> Result<(), Error> {
+        if matches!(ended, Ended::Quit | Ended::Signal(_)) && self.decode.is_some() {
+            // What comes meanwhile is not waited for.
+            for _ in 0..port::AHEAD {
+                let Ok(arrival) = self.port.arrivals.try_recv() else { break };
+                if !self.arrive(arrival, face, link)? {
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn follow(
         &mut self,
         face: &mut dyn Face,
         link: &mut Link,
-        told: &mut Option<String>,
+        told: &mut Told,
     ) -> Result<Ended, Error> {
         let (mut shown, mut flushed, mut kept) = (Instant::now(), Instant::now(), Instant::now());
         let (mut between, mut look_at_s) = (face.every(), 0.0);
-        let (mut lost, mut refused) = (0, None);
+        let mut lost = 0;
         let mut heard = Heard { at: Instant::now(), patience: SILENCE };
         loop {
             match self.port.arrivals.try_recv() {
@@ -243,10 +272,10 @@ impl Live<'_> {
                 && kept.elapsed() >= *every
             {
                 let now = self.keep.checkpoint(&self.session, false).err().map(|e| e.to_string());
-                if refused != now {
+                if self.keep.unwritten != now {
                     now.iter()
                         .for_each(|why| face.say(&format!("warning: {why}; it is tried again")));
-                    refused = now;
+                    self.keep.unwritten = now;
                 }
                 kept = Instant::now();
             }
@@ -261,16 +290,19 @@ impl Live<'_> {
                 }
             }
             if let Some(key) = face.key() {
-                if key == Key::Quit {
-                    return Ok(Ended::Quit);
+                match key {
+                    Key::Quit => return Ok(Ended::Quit),
+                    Key::Interrupt => return Ok(Ended::Signal(SIGINT)),
+                    Key::Save => self.save(face, link),
+                    Key::Pause => self.session.pause(),
+                    Key::Mark => self.mark(face),
                 }
-                self.press(key, face, link);
                 between = Duration::ZERO;
             }
             if shown.elapsed() >= between {
                 let start = Instant::now();
                 let view = self.view(link);
-                say_learnt(link, told, face);
+                told.tell(link, face);
                 face.show(&view)?;
                 shown = Instant::now();
                 between = face.every().max(start.elapsed() * REST);
@@ -282,7 +314,7 @@ impl Live<'_> {
         if let Some(decode) = &self.decode {
             decode.tell(link);
         }
-        self.session.view(link)
+        View { lost: self.keep.troubles(), ..self.session.view(link) }
     }
 
     /// Takes what arrived; `false` at the end.
@@ -345,28 +377,35 @@ impl Live<'_> {
         }
     }
 
-    fn press(&mut self, key: Key, face: &mut dyn Face, link: &mut Link) {
-        match key {
-            Key::Save => {
-                let kept = self.keep.checkpoint(&self.session, false);
-                self.keep.flush();
-                let view = self.view(link);
-                match kept.and_then(|()| (self.save)(&view)) {
-                    Ok(said) => face.say(&said),
-                    // The session goes on: the results can be saved later, elsewhere.
-                    Err(error) => face.say(&format!("not saved: {error}")),
-                }
+    /// Says of each what became of it: the session goes on, and what failed can be saved later.
+    fn save(&mut self, face: &mut dyn Face, link: &mut Link) {
+        let kept = self.keep.checkpoint(&self.session, false);
+        self.keep.flush();
+        let view = self.view(link);
+        let kept = match kept {
+            Ok(true) => Some("the checkpoint is saved".to_owned()),
+            Ok(false) => None,
+            Err(error) => Some(format!("the checkpoint is not saved: {error}")),
+        };
+        let results = match (self.save)(&view) {
+            Ok(place) => place.map(|place| format!("the results are in {place}")),
+            Err(error) => Some(format!("the results are not saved: {error}")),
+        };
+        let said: Vec<String> = kept.into_iter().chain(results).collect();
+        face.say(&match said.as_slice() {
+            [] => {
+                "nothing to save: neither --checkpoint nor -o was given, or no sample came".into()
             }
-            Key::Pause => self.session.pause(),
-            Key::Mark => {
-                let at_s = self.session.span_s();
-                face.say(&match self.session.mark() {
-                    Some(number) => format!("mark {number} at {at_s:.1} s"),
-                    None => "not marked: there are as many marks as are kept".to_owned(),
-                });
-            }
-            Key::Quit => {}
-        }
+            said => said.join("; "),
+        });
+    }
+
+    fn mark(&mut self, face: &mut dyn Face) {
+        let at_s = self.session.span_s();
+        face.say(&match self.session.mark() {
+            Some(number) => format!("mark {number} at {at_s:.1} s"),
+            None => "not marked: there are as many marks as are kept".to_owned(),
+        });
     }
 }
 
@@ -411,11 +450,24 @@ impl Heard {
     }
 }
 
-/// Says what was found out about the stream, once.
-fn say_learnt(link: &Link, told: &mut Option<String>, face: &mut dyn Face) {
-    if link.learnt != *told {
-        told.clone_from(&link.learnt);
-        told.iter().for_each(|sentence| face.say(sentence));
+/// What the user was told of the stream.
+#[derive(Default)]
+struct Told {
+    learnt: Option<String>,
+    amiss: Option<String>,
+}
+
+impl Told {
+    /// Says what was found out about it, and what is wrong with it, once.
+    fn tell(&mut self, link: &Link, face: &mut dyn Face) {
+        if link.learnt != self.learnt {
+            self.learnt.clone_from(&link.learnt);
+            self.learnt.iter().for_each(|sentence| face.say(sentence));
+        }
+        if link.amiss.is_some() && link.amiss != self.amiss {
+            self.amiss.clone_from(&link.amiss);
+            link.amiss.iter().for_each(|why| face.say(&format!("warning: {}: {why}", link.name)));
+        }
     }
 }
 

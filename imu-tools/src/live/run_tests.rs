@@ -130,7 +130,7 @@ fn run(
         decode: Some(Box::new(Text::default())),
         keep,
         goal: Goal::default(),
-        save: &mut |_| Ok(String::new()),
+        save: &mut |_| Ok(None),
     };
     seen.opened.store(1, Ordering::SeqCst);
     let mut watch = Watch { said: Vec::new(), enough, seen };
@@ -210,6 +210,101 @@ fn a_recording_that_cannot_be_written_is_given_up_and_the_measurement_goes_on() 
     assert_eq!(view.samples[0], 6000);
     assert_eq!(said, ["warning: the disk is full; the session goes on without it"]);
     assert_eq!(ended.unwrap_err().to_string(), "the disk is full");
+}
+
+/// Presses keys, one after the other.
+struct Keys {
+    keys: std::vec::IntoIter<Key>,
+    said: Vec<String>,
+    lost: Vec<String>,
+}
+
+impl Face for Keys {
+    fn every(&self) -> Duration {
+        Duration::ZERO
+    }
+
+    fn show(&mut self, view: &View) -> Result<(), Error> {
+        self.lost.clone_from(&view.lost);
+        Ok(())
+    }
+
+    fn say(&mut self, sentence: &str) {
+        self.said.push(sentence.to_owned());
+    }
+
+    fn key(&mut self) -> Option<Key> {
+        self.keys.next()
+    }
+}
+
+/// A session of so many lines that wait already, in which these keys are pressed, one after the other.
+fn press(
+    lines: i64,
+    keep: Keep,
+    save: &mut dyn FnMut(&View) -> Result<Option<String>, Error>,
+    keys: Vec<Key>,
+) -> (View, Result<Ended, Error>, Keys) {
+    // The device stays there.
+    let (to, arrivals) = std::sync::mpsc::sync_channel(1000);
+    for bytes in (0..lines).map(|number| line(number).into_bytes()) {
+        to.send(Arrival::Bytes { arrival_ns: 0, bytes }).unwrap();
+    }
+    let live = Live {
+        session: Session::new("it", &Options::default()),
+        port: Port { name: "it".into(), arrivals },
+        decode: Some(Box::new(Text::default())),
+        keep,
+        goal: Goal::default(),
+        save,
+    };
+    let mut face = Keys { keys: keys.into_iter(), said: Vec::new(), lost: Vec::new() };
+    let (view, ended) = live.run(&mut face);
+    (view, ended, face)
+}
+
+#[test]
+fn what_came_before_the_end_is_taken() {
+    for (key, how) in [(Key::Quit, Ended::Quit), (Key::Interrupt, Ended::Signal(2))] {
+        let (view, ended, _) = press(900, Keep::default(), &mut |_| Ok(None), vec![key]);
+        assert_eq!((view.samples[0], ended.unwrap()), (900, how));
+    }
+}
+
+#[test]
+fn a_recording_that_was_given_up_stays_in_sight() {
+    let keep = Keep { record: Some(Box::new(Full)), ..Keep::default() };
+    let keys = [vec![Key::Mark; 40], vec![Key::Quit]].concat();
+    let (_, _, face) = press(9, keep, &mut |_| Ok(None), keys);
+    assert_eq!(face.lost, ["recorded no longer: the disk is full"]);
+    assert!(face.said.last().unwrap().starts_with("mark 40 at"), "{:?}", face.said);
+}
+
+#[test]
+fn saving_says_what_was_saved_and_what_was_not() {
+    type Saved<'a> = &'a dyn Fn() -> Result<Option<String>, Error>;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("c");
+    let keep = |checkpoint: bool| Keep {
+        checkpoint: checkpoint.then(|| (Place::take(&path).unwrap(), Duration::from_secs(3600))),
+        ..Keep::default()
+    };
+    let out = || Ok(Some("out".to_owned()));
+    let early = || Err(Error::data("it is too early"));
+    let nothing = "nothing to save: neither --checkpoint nor -o was given, or no sample came";
+    let cases: [(bool, Saved<'_>, &str); 4] = [
+        (true, &|| Ok(None), "the checkpoint is saved"),
+        (true, &out, "the checkpoint is saved; the results are in out"),
+        (true, &early, "the checkpoint is saved; the results are not saved: it is too early"),
+        (false, &|| Ok(None), nothing),
+    ];
+    for (checkpoint, results, wanted) in cases {
+        let keys = vec![Key::Save, Key::Quit];
+        let (_, ended, face) = press(9, keep(checkpoint), &mut |_| results(), keys);
+        assert_eq!(ended.unwrap(), Ended::Quit);
+        assert_eq!(face.said, [wanted]);
+    }
+    assert!(path.exists());
 }
 
 #[test]

@@ -89,6 +89,8 @@ pub struct View {
     pub marks: Vec<Mark>,
     /// Samples are passed over.
     pub paused: bool,
+    /// What is not kept of all this, though it was asked for: a disk is full.
+    pub lost: Vec<String>,
 }
 
 impl Session {
@@ -259,6 +261,7 @@ impl Session {
             celsius: self.kept.celsius,
             marks: self.kept.marks.clone(),
             paused: self.paused,
+            lost: Vec::new(),
         }
     }
 

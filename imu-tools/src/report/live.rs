@@ -95,7 +95,7 @@ fn about(seconds: f64) -> String {
     duration((seconds / step).ceil().max(1.0) * step)
 }
 
-/// Rate, gaps, bytes refused and temperature, each where it is known.
+/// Rate, gaps, bytes refused and temperature, each where it is known, and what is not kept.
 #[must_use]
 pub fn link(view: &View) -> Vec<String> {
     let link = &view.link;
@@ -136,6 +136,7 @@ pub fn link(view: &View) -> Vec<String> {
     if let Some(celsius) = view.celsius {
         said.push(format!("{celsius:.1} °C"));
     }
+    said.extend(view.lost.iter().cloned());
     said
 }
 
@@ -147,6 +148,9 @@ pub fn hint(view: &View) -> Option<String> {
     }
     if let Some(silent_s) = view.link.silent_s {
         return Some(format!("nothing came for {}: has the sensor power?", duration(silent_s)));
+    }
+    if let Some(why) = &view.link.amiss {
+        return Some(why.clone());
     }
     if view.paused {
         return Some("paused: samples are passed over".into());
@@ -214,12 +218,14 @@ pub fn json(view: &View, within: f64) -> Value {
         "moving": view.moving,
         "paused": view.paused,
         "celsius": view.celsius,
+        "lost": view.lost,
         "marks": view.marks.iter().map(|mark| mark.at_s).collect::<Vec<_>>(),
         "link": {
             "name": link.name,
             "protocol": link.protocol,
             "gone": link.gone,
             "silent_s": link.silent_s,
+            "amiss": link.amiss,
             "bytes": link.bytes,
             "refused": link.refused,
             "bad_checksums": link.bad_checksums,

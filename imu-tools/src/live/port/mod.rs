@@ -13,14 +13,14 @@ mod serial;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use crate::error::Error;
 use crate::recording::{Block, Note, ReadOptions, SampleKind};
 pub use serial::available;
 
 /// Pieces of bytes that wait to be taken, at most: 18 s of the busiest port (900 pieces a second), minutes of others.
-const AHEAD: usize = 1 << 14;
+pub const AHEAD: usize = 1 << 14;
 
 /// Blocks of a recording that wait, at most: they are large, and none is lost where they are read later.
 const BLOCKS_AHEAD: usize = 4;
@@ -172,7 +172,7 @@ pub fn open(address: &Address, how: &How, expected: &Expected<'_>) -> Result<Por
     let (to, arrivals) = sync_channel(if address.comes_again() { BLOCKS_AHEAD } else { AHEAD });
     match address {
         Address::Serial(path) => serial::open(path, how.baud, expected, to)?,
-        Address::Pipe(path) => pipe::open(path, to)?,
+        Address::Pipe(path) => pipe::open(path, to),
         Address::Tcp(address) => network::open(address, to)?,
         Address::Recording(path) => replay::open(path, how, to)?,
     }
@@ -181,23 +181,35 @@ pub fn open(address: &Address, how: &How, expected: &Expected<'_>) -> Result<Por
 
 /// Host time that goes on evenly, whatever happens to the clock on the wall while it is read.
 struct HostClock {
-    start: Instant,
+    start: Duration,
     start_ns: i64,
 }
 
 impl HostClock {
     fn new() -> Self {
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        Self {
-            start: Instant::now(),
-            start_ns: i64::try_from(since.as_nanos()).unwrap_or(i64::MAX / 2),
-        }
+        Self { start: running(), start_ns: i64::try_from(since.as_nanos()).unwrap_or(i64::MAX / 2) }
     }
 
     fn now_ns(&self) -> i64 {
-        let passed = i64::try_from(self.start.elapsed().as_nanos()).unwrap_or(i64::MAX / 2);
-        self.start_ns.saturating_add(passed)
+        let passed = running().saturating_sub(self.start);
+        self.start_ns.saturating_add(i64::try_from(passed.as_nanos()).unwrap_or(i64::MAX / 2))
     }
+}
+
+/// How long the computer has run, with the time that it slept: a sensor that goes on meanwhile leaves a gap.
+#[cfg(target_os = "linux")]
+fn running() -> Duration {
+    let now = rustix::time::clock_gettime(rustix::time::ClockId::Boottime);
+    // Neither is negative.
+    Duration::new(now.tv_sec.unsigned_abs(), u32::try_from(now.tv_nsec).unwrap_or_default())
+}
+
+/// How long this process has run. On macOS the time that the computer slept is not in it.
+#[cfg(not(target_os = "linux"))]
+fn running() -> Duration {
+    static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
+    START.get_or_init(std::time::Instant::now).elapsed()
 }
 
 /// Reads pieces until the end (`Ok`), a failure, or until nobody listens (`None`).
@@ -231,6 +243,26 @@ fn pump(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn host_time_begins_on_the_wall_and_goes_on_with_the_clock_that_never_stops() {
+        let wall_ns = || SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_nanos() as i64;
+        let (before, clock, after) = (wall_ns(), HostClock::new(), wall_ns());
+        assert!((before..=after).contains(&clock.start_ns));
+        let [first, second] = [clock.now_ns(), clock.now_ns()];
+        assert!(clock.start_ns <= first && first <= second);
+        #[cfg(target_os = "linux")]
+        {
+            // Seconds since the computer was switched on, the time that it slept with them.
+            let told = || -> f64 {
+                let text = fs::read_to_string("/proc/uptime").unwrap();
+                text.split(' ').next().unwrap().parse().unwrap()
+            };
+            // It is told in hundredths.
+            let (before, now, after) = (told(), running().as_secs_f64(), told());
+            assert!(before <= now && now < after + 0.01, "{before} {now} {after}");
+        }
+    }
 
     #[test]
     fn what_is_named() {

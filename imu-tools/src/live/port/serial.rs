@@ -19,6 +19,10 @@ const RATES: [u32; 9] =
 /// How long each is listened to.
 const TRIAL: Duration = Duration::from_millis(700);
 
+/// How long the first byte is waited for: boards with a converter of their own start anew when their port is
+/// opened, behind a boot loader of two seconds.
+const BOOT: Duration = Duration::from_secs(4);
+
 /// Bytes that are enough to judge a rate.
 const ENOUGH: usize = 2048;
 
@@ -113,16 +117,27 @@ fn group(_: &Path) -> Option<String> {
     None
 }
 
-/// Opens a device that nobody else has, and hears it from now on: what waited in it came nobody knows when.
-fn connect(path: &Path, baud: u32) -> io::Result<SerialPort> {
+/// Opens a device that nobody else has.
+fn claim(path: &Path) -> io::Result<SerialPort> {
     let mut port = SerialPort::open(path, KeepSettings)?;
     // Before the baud rate is set: it is that of whoever has the port.
     lock(&port)?;
+    port.set_read_timeout(PAUSE)?;
+    Ok(port)
+}
+
+/// Hears a device at this rate from now on: what waited in it came nobody knows when.
+fn tune(port: &mut SerialPort, baud: u32) -> io::Result<()> {
     let mut settings = port.get_configuration()?;
     baud.apply_to_settings(&mut settings)?;
     port.set_configuration(&settings)?;
-    port.set_read_timeout(PAUSE)?;
-    port.discard_input_buffer()?;
+    port.discard_input_buffer()
+}
+
+/// Opens a device, and hears it at this rate.
+fn connect(path: &Path, baud: u32) -> io::Result<SerialPort> {
+    let mut port = claim(path)?;
+    tune(&mut port, baud)?;
     Ok(port)
 }
 
@@ -145,21 +160,23 @@ fn lock(_: &SerialPort) -> io::Result<()> {
     Ok(())
 }
 
-/// The first rate at which most of the bytes are part of frames.
-fn find_rate(path: &Path, expected: &Expected<'_>) -> Result<u32, Error> {
-    let mut heard = Vec::new();
+/// The first rate at which most of the bytes are part of frames, and the port at that rate: it is opened once,
+/// because many a board starts anew whenever its port is opened.
+fn find_rate(path: &Path, expected: &Expected<'_>) -> Result<(SerialPort, u32), Error> {
+    let mut port = claim(path).map_err(|e| refusal(path, &e))?;
+    let (mut heard, mut patience) = (Vec::new(), BOOT);
     for rate in RATES {
-        let port = match connect(path, rate) {
-            Ok(port) => port,
+        match tune(&mut port, rate) {
+            Ok(()) => {}
             // Not every adapter has every rate: the driver refuses it, or keeps another.
             Err(e) if matches!(e.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Other) => {
                 continue;
             }
             Err(e) => return Err(refusal(path, &e)),
-        };
-        let bytes = listen(&port);
+        }
+        let bytes = listen(&port, std::mem::replace(&mut patience, TRIAL));
         if (expected.refused)(&bytes).is_some_and(|share| share < TOO_MANY) {
-            return Ok(rate);
+            return Ok((port, rate));
         }
         if bytes.len() > heard.len() {
             heard = bytes;
@@ -182,13 +199,19 @@ fn find_rate(path: &Path, expected: &Expected<'_>) -> Result<u32, Error> {
     )))
 }
 
-/// What comes in a short time.
-fn listen(port: &SerialPort) -> Vec<u8> {
-    let (start, mut bytes, mut buffer) = (Instant::now(), Vec::new(), [0; PIECE]);
-    while start.elapsed() < TRIAL && bytes.len() < ENOUGH {
+/// What comes in a short time, once something does.
+fn listen(port: &SerialPort, patience: Duration) -> Vec<u8> {
+    let (mut bytes, mut buffer) = (Vec::new(), [0; PIECE]);
+    let mut end = Instant::now() + patience;
+    while Instant::now() < end && bytes.len() < ENOUGH {
         match port.read(&mut buffer) {
             Ok(0) => break,
-            Ok(n) => bytes.extend_from_slice(buffer.get(..n).unwrap_or_default()),
+            Ok(n) => {
+                if bytes.is_empty() {
+                    end = Instant::now() + TRIAL;
+                }
+                bytes.extend_from_slice(buffer.get(..n).unwrap_or_default());
+            }
             Err(e) if e.kind() == io::ErrorKind::TimedOut => {}
             Err(_) => break,
         }
@@ -203,11 +226,10 @@ pub(super) fn open(
     expected: &Expected<'_>,
     to: SyncSender<Arrival>,
 ) -> Result<(), Error> {
-    let baud = match baud {
-        Some(baud) => baud,
+    let (port, baud) = match baud {
+        Some(baud) => (connect(path, baud).map_err(|e| refusal(path, &e))?, baud),
         None => find_rate(path, expected)?,
     };
-    let port = connect(path, baud).map_err(|e| refusal(path, &e))?;
     let path = path.to_owned();
     let why = |ended: io::Result<()>| match ended {
         Ok(()) => "it was unplugged".to_owned(),
@@ -245,5 +267,41 @@ mod tests {
         assert!(refusal(&path, &second).to_string().contains("is busy"), "{second}");
         drop(first);
         connect(&path, 9600).unwrap();
+    }
+
+    /// Such as many have that program themselves over their port: 0.8 s of silence after it was opened.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_board_that_starts_anew_when_its_port_is_opened_is_heard() {
+        use std::os::fd::AsRawFd as _;
+        use std::sync::atomic::{AtomicBool, Ordering};
+        const SENDS_AFTER: Duration = Duration::from_millis(800);
+        let (mut board, theirs) = SerialPort::pair().unwrap();
+        let path = fs::read_link(format!("/proc/self/fd/{}", theirs.as_raw_fd())).unwrap();
+        board.set_read_timeout(Duration::from_millis(10)).unwrap();
+        drop(theirs);
+        let over = AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                let mut opened = None;
+                while !over.load(Ordering::Relaxed) {
+                    // Other errors than that nothing came: nobody has the other end open.
+                    let is_open = match board.read(&mut [0; 16]) {
+                        Ok(_) => true,
+                        Err(e) => e.kind() == io::ErrorKind::TimedOut,
+                    };
+                    opened = is_open.then(|| opened.unwrap_or_else(Instant::now));
+                    if opened.is_some_and(|opened| opened.elapsed() > SENDS_AFTER) {
+                        board.write_all(&[b'1'; 64]).unwrap();
+                    } else if !is_open {
+                        std::thread::sleep(Duration::from_millis(10));
+                    }
+                }
+            });
+            let refused = |bytes: &[u8]| (bytes.len() >= 64).then_some(0.0);
+            let found = find_rate(&path, &Expected { protocol: None, refused: &refused });
+            over.store(true, Ordering::Relaxed);
+            assert_eq!(found.unwrap().1, RATES[0]);
+        });
     }
 }

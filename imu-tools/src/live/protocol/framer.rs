@@ -57,14 +57,6 @@ pub struct Tally {
     pub messages: u64,
 }
 
-impl Tally {
-    /// The share of bytes that were given up, 0 to 1: near 1 with a wrong baud rate or protocol.
-    #[must_use]
-    pub fn share_refused(&self) -> f64 {
-        if self.bytes == 0 { 0.0 } else { self.refused as f64 / self.bytes as f64 }
-    }
-}
-
 /// Finds the frames of a protocol in a stream.
 pub struct Framer<W> {
     wire: W,

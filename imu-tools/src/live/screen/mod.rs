@@ -78,7 +78,7 @@ impl Face for Screen {
         }
         let control = key.modifiers.contains(KeyModifiers::CONTROL);
         match key.code {
-            KeyCode::Char('c') if control => Some(Key::Quit),
+            KeyCode::Char('c') if control => Some(Key::Interrupt),
             KeyCode::Char('q' | 'Q') => Some(Key::Quit),
             KeyCode::Char('s' | 'S') => Some(Key::Save),
             KeyCode::Char('p' | 'P') => Some(Key::Pause),

@@ -5,7 +5,8 @@
 //! version 2 leaves trailing zeros of the payload out, and may have a signature, which is not verified.
 //!
 //! An autopilot sends several of these of the same sensor, and those of other sensors: only the best that
-//! came is handed out, of one sender, in the order above; HIGHRES_IMU of its first instance only.
+//! came is handed out, of one sender, in the order above; HIGHRES_IMU of its first instance only. Where that
+//! comes no more, another message of the same sensor takes its place for good.
 //! SCALED_IMU is in 0.001 g and 0.001 rad/s. RAW_IMU has no unit by its definition: it is read as
 //! ArduPilot fills it, as SCALED_IMU; who sends counts of a converter gets values of no meaning.
 //! Time is µs or ms of the sender; that of ms is coarse, and wraps at 32 bits. The sequence number counts all
@@ -32,6 +33,11 @@ const SCALED_IMU3: u32 = 129;
 /// The best first.
 const PREFERRED: [u32; 5] = [HIGHRES_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3, RAW_IMU];
 
+/// Those of a sender's first sensor.
+const FIRST: [u32; 3] = [HIGHRES_IMU, SCALED_IMU, RAW_IMU];
+/// After so many messages without the one that was taken it comes no more.
+const PATIENCE: u32 = 1024;
+
 const MILLI_G: f64 = 9.80665e-3;
 const MILLI: f64 = 1e-3;
 
@@ -39,6 +45,10 @@ const MILLI: f64 = 1e-3;
 #[derive(Default)]
 pub struct Mavlink {
     taken: Option<Stream>,
+    /// Messages of other streams since the latest of this one.
+    passed: u32,
+    /// The stream that came no more: it is not gone back to.
+    ceased: Option<Stream>,
 }
 
 /// A message of a sender, by its rank.
@@ -46,6 +56,15 @@ pub struct Mavlink {
 struct Stream {
     rank: usize,
     sender: [u8; 2],
+}
+
+impl Stream {
+    fn is_of_the_sensor_of(self, other: Self) -> bool {
+        let is_first = |stream: Self| {
+            PREFERRED.get(stream.rank).is_some_and(|message| FIRST.contains(message))
+        };
+        self.sender == other.sender && is_first(self) && is_first(other)
+    }
 }
 
 impl Wire for Mavlink {
@@ -84,12 +103,19 @@ impl Wire for Mavlink {
         };
         let stream = Stream { rank, sender: view.sender() };
         let taken = *self.taken.get_or_insert(stream);
-        let is_better = rank < taken.rank;
-        if is_better {
+        let is_better = rank < taken.rank && self.ceased != Some(stream);
+        let is_heir = self.passed >= PATIENCE && stream.is_of_the_sensor_of(taken);
+        if is_heir {
+            self.ceased = Some(taken);
+        }
+        if is_better || is_heir {
             self.taken = Some(stream);
         }
-        if is_better || stream == taken {
+        if self.taken == Some(stream) {
+            self.passed = 0;
             view.sample().into_iter().for_each(each);
+        } else {
+            self.passed = self.passed.saturating_add(1);
         }
     }
 }

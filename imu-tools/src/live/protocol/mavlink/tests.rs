@@ -44,6 +44,28 @@ fn of_one_sensor_the_best_message_is_taken() {
     assert_eq!(both, [123_456_789_012, 4_000_000_000, 987_654_321]);
 }
 
+/// And of another sensor nothing is taken, however long the first is silent.
+#[test]
+fn where_the_best_comes_no_more_another_of_the_same_sensor_takes_its_place() {
+    let patience = PATIENCE as usize;
+    let mut frames = vec![&HIGHRES_IMU_V2[..]];
+    frames.extend(vec![&RAW_IMU_V2[..]; patience + 3]);
+    // It comes again, and better ones than the present do.
+    frames.extend([&HIGHRES_IMU_V2[..], &RAW_IMU_V2, &SCALED_IMU_V2, &RAW_IMU_V2, &SCALED_IMU_V2]);
+    let taken: Vec<u64> = messages(&frames).iter().map(|m| m.ticks.unwrap().value).collect();
+    let (highres, raw, scaled) = (987_654_321, 123_456_789_012, 4_000_000_000);
+    assert_eq!(taken, [highres, raw, raw, raw, raw, scaled, scaled]);
+    let mut other = RAW_IMU_V2;
+    other[5] = 99;
+    let [rest @ .., low, high] = &mut other;
+    let extra = crc_extra::of(RAW_IMU).unwrap();
+    [*low, *high] = crc(rest[1..].iter().chain([&extra])).to_le_bytes();
+    let mut frames = vec![&HIGHRES_IMU_V2[..]];
+    frames.extend(vec![&other[..]; patience + 3]);
+    assert_eq!(messages(&frames).len(), 1);
+    assert_eq!(messages(&[&other]).len(), 1);
+}
+
 #[test]
 fn a_flag_that_nobody_knows_is_refused() {
     let mut frame = SCALED_IMU_V2;

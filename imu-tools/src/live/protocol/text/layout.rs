@@ -15,8 +15,8 @@ pub struct Layout {
     columns: Vec<Column>,
     /// Fields of a row, where a header told them all.
     width: Option<usize>,
-    /// Of the first row; `None` before it.
-    dialect: Option<Dialect>,
+    /// `None` before it.
+    first_row: Option<FirstRow>,
     /// Unit of time, where it is told.
     pub time: Option<TimeUnit>,
     rate: RateUnit,
@@ -26,6 +26,13 @@ pub struct Layout {
     pub increments: bool,
     /// Units that nobody told.
     granted: bool,
+}
+
+/// What the first row shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct FirstRow {
+    dialect: Dialect,
+    fields: usize,
 }
 
 /// A line's numbers.
@@ -76,7 +83,7 @@ impl Layout {
 
     /// Whether a header told the same; a layout that has seen rows knows more.
     pub fn tells_as(&self, other: &Self) -> bool {
-        let told = |layout: &Self| Self { dialect: None, ..layout.clone() };
+        let told = |layout: &Self| Self { first_row: None, ..layout.clone() };
         told(self) == told(other)
     }
 
@@ -94,7 +101,7 @@ impl Layout {
         let granted =
             rate.is_none() && has(Column::Rate(0)) || force.is_none() && has(Column::Force(0));
         Ok(Self {
-            dialect: None,
+            first_row: None,
             width: None,
             time,
             rate: rate.unwrap_or(RateUnit::RadPerS),
@@ -106,14 +113,17 @@ impl Layout {
         })
     }
 
-    /// Keeps the dialect of the first row.
-    pub fn see_dialect(&mut self, row: &[u8]) {
-        self.dialect.get_or_insert_with(|| Dialect::of(row));
+    /// Keeps what the first row shows.
+    pub fn see(&mut self, row: &[u8]) {
+        self.first_row.get_or_insert_with(|| {
+            let dialect = Dialect::of(row);
+            FirstRow { dialect, fields: dialect.fields(row).count() }
+        });
     }
 
     /// The numbers of a line; `None` where it lacks some, or one is none.
     pub fn row<'a>(&self, line: &'a [u8]) -> Option<Row<'a>> {
-        let dialect = self.dialect.unwrap_or_else(|| Dialect::of(line));
+        let dialect = self.first_row.map_or_else(|| Dialect::of(line), |first| first.dialect);
         let (mut rate, mut force) = (Triple::default(), Triple::default());
         let (mut seconds, mut nanoseconds, mut units, mut celsius) = (None, None, None, None);
         let mut fields = dialect.fields(line);
@@ -133,11 +143,16 @@ impl Layout {
                 Column::Temperature => celsius = value(dialect, field),
             }
         }
-        // Of two lines, the end of one and the line end between them may be lost.
+        // Of two lines, the end of one and the line end between them may be lost. A row may have more fields than
+        // were told, as many as the first.
         let columns = self.columns.len();
-        let joined = match self.width {
-            Some(width) => fields.skip(width - columns).any(|field| !field.is_empty()),
-            None => fields.count() + 1 >= columns,
+        let joined = match (self.width, self.first_row) {
+            (Some(width), _) => fields.skip(width - columns).any(|field| !field.is_empty()),
+            (None, Some(first)) => {
+                let more = fields.count();
+                more + 1 >= columns && columns + more > first.fields
+            }
+            (None, None) => false,
         };
         if joined {
             return None;

@@ -143,7 +143,7 @@ impl Wire for Text {
             }
         }
         let Some(layout) = &mut self.layout else { return };
-        layout.see_dialect(row);
+        layout.see(row);
         let kind = if layout.increments { Kind::Increments { over_s: None } } else { Kind::Rates };
         let Some(row) = layout.row(row) else { return };
         let ticks = row.time.and_then(|time| self.clock.ticks(time));

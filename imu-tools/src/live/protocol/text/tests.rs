@@ -60,6 +60,15 @@ fn columns_are_told_or_customary_or_unknown() {
 }
 
 #[test]
+fn a_row_may_have_as_many_fields_beside_those_told_as_the_first() {
+    let six = "1,2,3,4,5,6\n";
+    let messages = read_with("ax,ay,az", &format!("\n{six}{six}1,2,3,4,5,61,2,3,4,5,6\n{six}"));
+    assert_eq!(messages.len(), 3);
+    assert_eq!(messages[2].accelerometer, Some([1.0, 2.0, 3.0]));
+    assert_eq!(read_with("ax,ay,az", "\n1,2,3\n1,2,31,2,3\n1,2,3,4\n").len(), 2);
+}
+
+#[test]
 fn the_unit_of_time_is_learnt_from_its_spacing() {
     let rows: String = (0..40).map(|i| format!("{},1,2,3\n", 5_000 + i * 5_000)).collect();
     let messages = read(&format!("t,gx,gy,gz\n{rows}"));

@@ -1,0 +1,118 @@
+//! Whether what comes lately is what a sensor sends: bytes are judged by the stretch that they are in, because
+//! hours of good ones say nothing of a device that came back with another baud rate.
+
+use super::protocol::Tally;
+
+/// Bytes of a stretch.
+const STRETCH: u64 = 16_384;
+
+/// The part of a stretch that is refused with a wrong baud rate.
+const TOO_MANY: f64 = 0.95;
+
+/// So many bytes without a sample are of a device that sends none.
+const FRUITLESS: u64 = 65_536;
+
+/// What is wrong with bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Amiss {
+    /// This part of a stretch was of no frame.
+    Refused(f64),
+    /// Frames, and in so many bytes of them no sample.
+    Fruitless(u64),
+}
+
+/// What came lately.
+#[derive(Debug, Default)]
+pub struct Stretch {
+    /// What had come when this stretch began.
+    began: Tally,
+    /// What had come with the latest sample.
+    sampled: Tally,
+    amiss: Option<Amiss>,
+    had_samples: bool,
+}
+
+impl Stretch {
+    /// Looks at all that came so far.
+    pub fn look(&mut self, tally: Tally) {
+        if tally.messages > self.sampled.messages {
+            self.sampled = tally;
+            if matches!(self.amiss, Some(Amiss::Fruitless(_))) {
+                self.amiss = None;
+            }
+        }
+        let bytes = tally.bytes.saturating_sub(self.began.bytes);
+        if bytes > STRETCH {
+            let share = tally.refused.saturating_sub(self.began.refused) as f64 / bytes as f64;
+            let is_refused = share > TOO_MANY;
+            self.had_samples |= !is_refused && tally.messages > self.began.messages;
+            self.amiss = is_refused.then_some(Amiss::Refused(share));
+            self.began = tally;
+        }
+        let fruitless = tally.bytes.saturating_sub(self.sampled.bytes);
+        if self.amiss.is_none() && fruitless > FRUITLESS {
+            self.amiss = Some(Amiss::Fruitless(fruitless));
+        }
+    }
+
+    /// What is wrong now.
+    pub fn amiss(&self) -> Option<Amiss> {
+        self.amiss
+    }
+
+    /// Whether a stretch before was as it should be.
+    pub fn had_samples(&self) -> bool {
+        self.had_samples
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// So many more of each.
+    fn more(tally: &mut Tally, bytes: u64, refused: u64, messages: u64) -> Tally {
+        tally.bytes += bytes;
+        tally.refused += refused;
+        tally.messages += messages;
+        *tally
+    }
+
+    #[test]
+    fn hours_of_good_bytes_hide_no_bad_stretch() {
+        let (mut stretch, mut tally) = (Stretch::default(), Tally::default());
+        for _ in 0..100_000 {
+            stretch.look(more(&mut tally, 4096, 0, 100));
+            assert_eq!(stretch.amiss(), None);
+        }
+        assert!(stretch.had_samples());
+        // A frame in it is chance.
+        for _ in 0..9 {
+            stretch.look(more(&mut tally, 4096, 4096, 0));
+        }
+        stretch.look(more(&mut tally, 4096, 4050, 1));
+        assert!(matches!(stretch.amiss(), Some(Amiss::Refused(share)) if share > 0.99));
+        for _ in 0..10 {
+            stretch.look(more(&mut tally, 4096, 100, 100));
+        }
+        assert_eq!(stretch.amiss(), None);
+    }
+
+    #[test]
+    fn frames_without_a_sample_are_told_of_until_one_comes() {
+        let (mut stretch, mut tally) = (Stretch::default(), Tally::default());
+        for _ in 0..16 {
+            stretch.look(more(&mut tally, 4096, 0, 0));
+            assert_eq!(stretch.amiss(), None);
+        }
+        stretch.look(more(&mut tally, 1, 0, 0));
+        assert_eq!(stretch.amiss(), Some(Amiss::Fruitless(65_537)));
+        assert!(!stretch.had_samples());
+        stretch.look(more(&mut tally, 40_000, 0, 1));
+        assert_eq!(stretch.amiss(), None);
+        for _ in 0..20 {
+            stretch.look(more(&mut tally, 4096, 0, 0));
+        }
+        assert!(matches!(stretch.amiss(), Some(Amiss::Fruitless(_))) && stretch.had_samples());
+    }
+}
