@@ -4,7 +4,8 @@
 //!
 //! Bytes are read when a timer of 16 ms fires, as USB adapters do. Two comparisons, of N and K of all axes of
 //! both sensors: with the calibration of the very samples that came out of the decoder, bit for bit; and with
-//! that of the scene, whose samples the protocol rounds and whose stamps the clock found again.
+//! that of the scene, whose samples the protocol rounds and whose stamps the clock found again. Protocols that
+//! have increments send the scene once more as such.
 
 use imu_core::allan::Parameter;
 use imu_tools::calibrate::{Calibration, Options, calibrate};
@@ -14,12 +15,15 @@ use imu_tools::live::link::Link;
 use imu_tools::live::protocol::{Encoder, Protocol};
 use imu_tools::live::run::{Decode as _, Step};
 use imu_tools::live::session::Session;
-use imu_tools::live::{Count, Message, Ticks};
+use imu_tools::live::{Count, Kind, Message, Ticks};
 use imu_tools::recording::{Block, Note, ReadOptions, Source, Stream};
 use imu_tools::scene::{Preset, Rate, Scene, Simulator};
 
 /// Between two readings of the line.
 const BURST_NS: i64 = 16_000_000;
+
+/// Between two samples.
+const PERIOD_S: f64 = 1e-3;
 
 fn main() {
     let scene = Scene {
@@ -29,15 +33,22 @@ fn main() {
     };
     let source = Box::new(Simulator::new(&scene).expect("a scene"));
     let offline = calibrate(source, "it", &Options::default(), |_| {}).expect("a calibration");
-    println!("protocol,messages,lost,as offline of the decoded samples,N off the scene's,K off it");
-    for protocol in Protocol::ALL {
-        let (live, decoded, link) = listen(protocol, &scene);
+    println!(
+        "protocol,of,messages,lost,as offline of the decoded samples,N off the scene's,K off it"
+    );
+    let kinds =
+        [("rates", Kind::Rates), ("increments", Kind::Increments { over_s: Some(PERIOD_S) })];
+    let sent = Protocol::ALL.into_iter().flat_map(|protocol| kinds.map(|kind| (protocol, kind)));
+    for (protocol, (name, kind)) in
+        sent.filter(|(protocol, (_, kind))| Encoder::can_send(*protocol, *kind))
+    {
+        let (live, decoded, link) = listen(protocol, kind, &scene);
         let again = calibrate(Box::new(Kept::new(decoded)), "it", &Options::default(), |_| {});
         let same = numbers(&live) == numbers(&again.expect("a calibration"));
         let [n, k] = furthest(&live, &offline);
         let lost = link.clock.map_or(0, |clock| clock.lost);
         println!(
-            "{protocol},{},{lost},{},{n:.1e},{k:.1e}",
+            "{protocol},{name},{},{lost},{},{n:.1e},{k:.1e}",
             link.messages,
             if same { "bit for bit" } else { "NOT the same" }
         );
@@ -45,7 +56,8 @@ fn main() {
 }
 
 /// What a session says of a scene that a sensor sends, the samples it took, and the way.
-fn listen(protocol: Protocol, scene: &Scene) -> (Calibration, Vec<Block>, Link) {
+fn listen(protocol: Protocol, kind: Kind, scene: &Scene) -> (Calibration, Vec<Block>, Link) {
+    let times = if kind == Kind::Rates { 1.0 } else { PERIOD_S };
     let mut source = Simulator::new(scene).expect("a scene");
     let (mut encoder, mut block) = (Encoder::new(protocol), Block::default());
     let mut intake = Intake::new("it", Some(protocol), &ReadOptions::default()).expect("an intake");
@@ -69,8 +81,9 @@ fn listen(protocol: Protocol, scene: &Scene) -> (Calibration, Vec<Block>, Link) 
                 take(&mut steps);
             }
             let message = Message {
-                gyroscope: Some(gyroscope.value),
-                accelerometer: Some(accelerometer.value),
+                gyroscope: Some(gyroscope.value.map(|rate| rate * times)),
+                accelerometer: Some(accelerometer.value.map(|force| force * times)),
+                kind,
                 ticks: Some(Ticks {
                     value: sent_ns as u64,
                     per_second: 1_000_000_000,

@@ -257,9 +257,10 @@ impl Track {
         self.origin_ns.saturating_add(line.round() as i64)
     }
 
-    /// Host time that the sensor took for the message that was passed on to last, ns.
+    /// Time that the sensor took for the message that was passed on to last, ns: by its own clock where it sends
+    /// that, because by that it integrates.
     pub fn interval_ns(&self, next: &Next) -> f64 {
-        let unit_ns = self.unit_ns * (1.0 + 1e-9 * self.drift);
+        let unit_ns = self.tick_ns.unwrap_or_else(|| self.unit_ns());
         let stride = self.mean_stride();
         let units = next.units as f64 / next.lost.saturating_add(1) as f64;
         // Two readings are rounded: what they can explain is no other interval.
