@@ -178,7 +178,9 @@ impl Decode for Intake {
         link.learnt = decoder.learnt().map(str::to_owned);
         (link.bytes, link.refused) = (tally.bytes, tally.refused);
         (link.bad_checksums, link.messages) = (tally.damaged, tally.messages);
-        link.amiss = self.stretch.amiss().map(|amiss| {
+        // Where no sample came before, the session ends of it.
+        let amiss = self.stretch.amiss().filter(|_| self.stretch.had_samples());
+        link.amiss = amiss.map(|amiss| {
             let protocol = decoder.protocol();
             match amiss {
                 Amiss::Refused(_) => format!(

@@ -130,8 +130,10 @@ fn bytes_that_are_refused_later_are_told_of_until_others_come() {
         error.contains("of the bytes of it are no imu-frame: the baud rate is wrong"),
         "{error}"
     );
-    let mut intake = Intake::new("it", Some(Protocol::ImuFrame), &options).unwrap();
     let (mut link, mut steps) = (Link::default(), Vec::new());
+    intake.tell(&mut link);
+    assert_eq!(link.amiss, None, "it is told once");
+    let mut intake = Intake::new("it", Some(Protocol::ImuFrame), &options).unwrap();
     feed(&mut intake, 0..5008, 0, &mut steps);
     for (is_noise, amiss) in [(false, false), (true, true), (false, false)] {
         if is_noise {
