@@ -9,6 +9,7 @@ pub mod checkpoint;
 pub mod clock;
 pub mod goal;
 pub mod intake;
+pub mod keep;
 pub mod link;
 mod message;
 pub mod port;
@@ -20,5 +21,6 @@ pub mod session;
 mod shown;
 pub mod simulated;
 mod stretch;
+mod told;
 
 pub use message::{Count, Kind, Message, Ticks};

@@ -4,14 +4,15 @@
 use std::sync::mpsc::TryRecvError;
 use std::time::{Duration, Instant};
 
-use super::checkpoint::Place;
 use super::goal::Goal;
+use super::keep::Keep;
 use super::link::Link;
 use super::port::{self, Arrival, Port};
 use super::session::{Session, View};
+use super::told::{Heard, Told};
 use crate::error::Error;
-use crate::output::{Output, end_is_asked};
-use crate::recording::{Block, Note, SampleKind, Sink};
+use crate::output::end_is_asked;
+use crate::recording::{Block, Note, SampleKind};
 
 /// Nothing left to take, the loop sleeps so long: to wake for every piece would cost as much as all else,
 /// and when bytes came is noted by who reads them. Keys and signals are looked at as often, at least.
@@ -25,9 +26,6 @@ const REST: u32 = 200;
 
 /// The goal is looked at whenever the record has grown by this part, whatever the time on the wall.
 const GROWTH: f64 = 1.02;
-
-/// Nothing came for so long: the user is told. Of a sensor that is merely slow, once.
-const SILENCE: Duration = Duration::from_secs(10);
 
 /// What POSIX calls the signal of Ctrl-C.
 const SIGINT: i32 = 2;
@@ -110,72 +108,6 @@ pub enum Ended {
     Signal(i32),
 }
 
-/// What is kept of a session.
-#[derive(Default)]
-pub struct Keep {
-    /// The checkpoint's place, and the time between checkpoints.
-    pub checkpoint: Option<(Place, Duration)>,
-    /// The samples.
-    pub record: Option<Box<dyn Sink>>,
-    /// The bytes.
-    pub raw: Option<Output>,
-    /// What could not be kept: the session goes on without it.
-    pub lost: Vec<Error>,
-    /// Why the latest checkpoint could not be written, if so: it is tried again.
-    pub unwritten: Option<String>,
-}
-
-impl Keep {
-    /// Writes a checkpoint, if there is to be one; whether there is.
-    fn checkpoint(&mut self, session: &Session, ended: bool) -> Result<bool, Error> {
-        match &mut self.checkpoint {
-            // There is nothing to go on with.
-            Some(_) if session.samples() == [0, 0] => Ok(false),
-            Some((place, _)) => place.write(&session.to_bytes(ended)?).map(|()| true),
-            None => Ok(false),
-        }
-    }
-
-    /// All that is not kept now, in words.
-    fn troubles(&self) -> Vec<String> {
-        let lost = self.lost.iter().map(|error| format!("recorded no longer: {error}"));
-        lost.chain(self.unwritten.iter().map(|why| format!("no checkpoint: {why}"))).collect()
-    }
-
-    /// Writes to the recording, if there is one; one that cannot be written is given up, and stays as it is.
-    fn record(&mut self, write: impl FnOnce(&mut dyn Sink) -> Result<(), Error>) {
-        if let Some(record) = &mut self.record
-            && let Err(error) = write(record.as_mut())
-        {
-            self.record = None;
-            self.lost.push(error);
-        }
-    }
-
-    /// The same of the bytes.
-    fn raw(&mut self, write: impl FnOnce(&mut Output) -> Result<(), Error>) {
-        if let Some(raw) = &mut self.raw
-            && let Err(error) = write(raw)
-        {
-            self.raw = None;
-            self.lost.push(error);
-        }
-    }
-
-    fn flush(&mut self) {
-        self.record(|record| record.flush());
-        self.raw(Output::sync);
-    }
-
-    /// Completes the files; the first thing that was not kept.
-    fn close(self) -> Result<(), Error> {
-        let record = self.record.map_or(Ok(()), Sink::finish);
-        let raw = self.raw.map_or(Ok(()), Output::finish);
-        let lost = self.lost.into_iter().next().map_or(Ok(()), Err);
-        lost.and(record).and(raw)
-    }
-}
-
 /// A session, and all that it is connected with.
 pub struct Live<'a> {
     /// The calibration.
@@ -239,7 +171,7 @@ impl Live<'_> {
         let (mut shown, mut flushed, mut kept) = (Instant::now(), Instant::now(), Instant::now());
         let (mut between, mut look_at_s) = (face.every(), 0.0);
         let mut lost = 0;
-        let mut heard = Heard { at: Instant::now(), patience: SILENCE };
+        let mut heard = Heard::default();
         loop {
             match self.port.arrivals.try_recv() {
                 Ok(arrival) => {
@@ -406,68 +338,6 @@ impl Live<'_> {
             Some(number) => format!("mark {number} at {at_s:.1} s"),
             None => "not marked: there are as many marks as are kept".to_owned(),
         });
-    }
-}
-
-/// When something came last.
-struct Heard {
-    at: Instant,
-    patience: Duration,
-}
-
-impl Heard {
-    /// Notes that something came, if it did: a port that is open hands on empty pieces, too. That it went away
-    /// is told elsewhere.
-    fn note(&mut self, arrival: &Arrival, link: &mut Link, face: &mut dyn Face) {
-        match arrival {
-            Arrival::Bytes { bytes, .. } if !bytes.is_empty() => {}
-            Arrival::Gone(_) | Arrival::Back => {
-                (self.at, link.silent_s) = (Instant::now(), None);
-                return;
-            }
-            _ => return,
-        }
-        if let Some(silent_s) = link.silent_s.take() {
-            face.say(&format!("{} sends again, after {silent_s:.0} s of silence", link.name));
-            self.patience = 2 * self.at.elapsed();
-        }
-        self.at = Instant::now();
-    }
-
-    /// Says that it is silent, if it is; what went away was said.
-    fn look(&self, link: &mut Link, face: &mut dyn Face) {
-        let silence = self.at.elapsed();
-        if link.gone.is_some() || silence < self.patience {
-            return;
-        }
-        if link.silent_s.replace(silence.as_secs_f64()).is_none() {
-            face.say(&format!(
-                "{}: nothing came for {} s: see that the sensor has power and sends by itself",
-                link.name,
-                silence.as_secs()
-            ));
-        }
-    }
-}
-
-/// What the user was told of the stream.
-#[derive(Default)]
-struct Told {
-    learnt: Option<String>,
-    amiss: Option<String>,
-}
-
-impl Told {
-    /// Says what was found out about it, and what is wrong with it, once.
-    fn tell(&mut self, link: &Link, face: &mut dyn Face) {
-        if link.learnt != self.learnt {
-            self.learnt.clone_from(&link.learnt);
-            self.learnt.iter().for_each(|sentence| face.say(sentence));
-        }
-        if link.amiss.is_some() && link.amiss != self.amiss {
-            self.amiss.clone_from(&link.amiss);
-            link.amiss.iter().for_each(|why| face.say(&format!("warning: {}: {why}", link.name)));
-        }
     }
 }
 

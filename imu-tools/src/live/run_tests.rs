@@ -11,8 +11,10 @@ use serial2::SerialPort;
 
 use super::*;
 use crate::calibrate::Options;
+use crate::live::checkpoint::Place;
 use crate::live::port::{self, Address, Expected, How};
-use crate::recording::Sample;
+use crate::output::Output;
+use crate::recording::{Sample, Sink};
 
 /// Lines `STAMP VALUE`, a sample each; anything else is refused.
 #[derive(Default)]
@@ -324,35 +326,4 @@ fn a_connection_that_closes_is_opened_again() {
     let noise = view.snapshot.calibration.gyroscope.unwrap();
     assert_eq!((noise.stamps.samples, noise.stamps.missing), (6000, 1000));
     assert!(said[0].contains("the connection was closed"), "{said:?}");
-}
-
-#[test]
-fn a_port_where_nothing_comes_is_told_of_once_and_when_it_sends_again() {
-    let mut watch = Watch { said: Vec::new(), enough: u64::MAX, seen: Arc::default() };
-    let mut link = Link { name: "it".into(), ..Link::default() };
-    let piece = |bytes: &[u8]| Arrival::Bytes { arrival_ns: 0, bytes: bytes.to_vec() };
-    let mut heard = Heard { at: Instant::now(), patience: Duration::ZERO };
-    // A port that is open hands on empty pieces; one that went away was told of.
-    heard.note(&piece(b""), &mut link, &mut watch);
-    link.silent_s = Some(12.0);
-    heard.note(&Arrival::Gone("unplugged".into()), &mut link, &mut watch);
-    link.gone = Some("unplugged".into());
-    heard.look(&mut link, &mut watch);
-    assert_eq!((watch.said.len(), link.silent_s), (0, None));
-    link.gone = None;
-    for _ in 0..3 {
-        heard.look(&mut link, &mut watch);
-    }
-    assert_eq!(
-        watch.said,
-        ["it: nothing came for 0 s: see that the sensor has power and sends by itself"]
-    );
-    assert!(link.silent_s.is_some());
-    heard.note(&piece(b"1"), &mut link, &mut watch);
-    assert_eq!(watch.said[1..], ["it sends again, after 0 s of silence"]);
-    assert_eq!(link.silent_s, None);
-    // Of a sensor that is merely slow it is told once.
-    heard.patience = heard.at.elapsed() + SILENCE;
-    heard.look(&mut link, &mut watch);
-    assert_eq!(watch.said.len(), 2);
 }
