@@ -7,6 +7,7 @@
 
 pub mod checkpoint;
 pub mod clock;
+pub mod face;
 pub mod goal;
 pub mod intake;
 pub mod keep;

@@ -4,6 +4,7 @@
 use std::sync::mpsc::TryRecvError;
 use std::time::{Duration, Instant};
 
+use super::face::{Face, Key};
 use super::goal::Goal;
 use super::keep::Keep;
 use super::link::Link;
@@ -58,41 +59,6 @@ pub trait Decode {
 
     /// Fills in what is known of the way.
     fn tell(&self, link: &mut Link);
-}
-
-/// What the user wants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Key {
-    /// A checkpoint and the results now.
-    Save,
-    /// Pass over samples, or take them again.
-    Pause,
-    /// Mark this moment.
-    Mark,
-    /// End with the report.
-    Quit,
-    /// End as the signal does that a terminal sends at Ctrl-C.
-    Interrupt,
-}
-
-/// Who shows a session to the user.
-pub trait Face {
-    /// The time between views.
-    fn every(&self) -> Duration;
-
-    /// Shows what there is to see.
-    ///
-    /// # Errors
-    /// When it cannot be written.
-    fn show(&mut self, view: &View) -> Result<(), Error>;
-
-    /// A sentence.
-    fn say(&mut self, sentence: &str);
-
-    /// A key that was pressed.
-    fn key(&mut self) -> Option<Key> {
-        None
-    }
 }
 
 /// Why a session ended.

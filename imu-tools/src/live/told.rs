@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
+use super::face::Face;
 use super::link::Link;
 use super::port::Arrival;
-use super::run::Face;
 
 /// Nothing came for so long: the user is told. Of a sensor that is merely slow, once.
 const SILENCE: Duration = Duration::from_secs(10);

@@ -9,7 +9,7 @@ use std::time::Duration;
 use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
 
-use super::run::{Face, Key};
+use super::face::{Face, Key};
 use super::session::View;
 use crate::error::Error;
 pub use draw::draw;
