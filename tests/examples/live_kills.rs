@@ -103,8 +103,9 @@ fn streams(kills: u32, moments: &mut Moments) {
     sleep(SETTLED);
     let pid = child.id().to_string();
     Command::new("kill").args(["-s", "INT", &pid]).status().expect("a signal");
-    let sent = sensor.sent() - begun;
     let [gyroscope, _] = numbers(&said(&child.wait_with_output().expect("a child")).out);
+    // Up to its end: the last of them came too late.
+    let sent = sensor.sent() - begun;
     let of = |name: &str| gyroscope[name].as_u64().expect("a count");
     println!("streams killed                            {kills}");
     println!("resumes refused                           {refused}");
