@@ -91,6 +91,7 @@ fn listen(protocol: Protocol, kind: Kind, scene: &Scene) -> (Calibration, Vec<Bl
                 }),
                 count: Some(Count { value: number, wraps_at: 1 << 32 }),
                 celsius: Some(25.0),
+                ..Message::default()
             };
             encoder.encode(&message, &mut bytes);
             number += 1;

@@ -32,6 +32,7 @@ pub fn message(i: u32) -> Message {
         }),
         count: Some(Count { value: i, wraps_at: 1 << 32 }),
         celsius: Some(21.5),
+        ..Message::default()
     }
 }
 

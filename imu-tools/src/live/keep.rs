@@ -25,14 +25,18 @@ pub struct Keep {
 }
 
 impl Keep {
-    /// Writes a checkpoint, if there is to be one; whether there is.
+    /// Writes a checkpoint, if there is to be one, and remembers whether it could; whether there is one.
     pub(super) fn checkpoint(&mut self, session: &Session, ended: bool) -> Result<bool, Error> {
-        match &mut self.checkpoint {
+        let written = match &mut self.checkpoint {
             // There is nothing to go on with.
             Some(_) if session.samples() == [0, 0] => Ok(false),
-            Some((place, _)) => place.write(&session.to_bytes(ended)?).map(|()| true),
+            Some((place, _)) => {
+                session.to_bytes(ended).and_then(|bytes| place.write(&bytes)).map(|()| true)
+            }
             None => Ok(false),
-        }
+        };
+        self.unwritten = written.as_ref().err().map(ToString::to_string);
+        written
     }
 
     /// All that is not kept now, in words.

@@ -15,6 +15,9 @@ pub struct Message {
     pub count: Option<Count>,
     /// A thermometer in the sensor, degrees Celsius.
     pub celsius: Option<f64>,
+    /// Which of a sender's streams it is of, where that may change: another has another rate, and nothing of
+    /// its times is that of the one before.
+    pub stream: u8,
 }
 
 /// What the numbers of a [`Message`] are.

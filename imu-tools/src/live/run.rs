@@ -92,17 +92,21 @@ pub struct Live<'a> {
 
 impl Live<'_> {
     /// Runs until an end; the last view, and why it ended, or what went wrong: the port, or something that
-    /// could not be written. Whatever ends it, checkpoint and recordings are complete.
+    /// could not be written. Whatever ends it, checkpoint and recordings are complete. What the user ended
+    /// has ended so, whatever the port would have come to.
     pub fn run(mut self, face: &mut dyn Face) -> (View, Result<Ended, Error>) {
         let mut link = Link { name: self.port.name.clone(), ..Link::default() };
         let mut told = Told::default();
-        let followed = self
-            .follow(face, &mut link, &mut told)
-            .and_then(|ended| self.empty(ended, face, &mut link).map(|()| ended));
+        let followed = self.follow(face, &mut link, &mut told);
+        let is_stopped = matches!(followed, Ok(Ended::Quit | Ended::Signal(_)));
+        if is_stopped {
+            self.empty(face, &mut link);
+        }
         let mut steps = Vec::new();
         let last = self.decode.as_mut().map_or(Ok(()), |decode| decode.finish(&mut steps));
         self.proceed(steps);
-        let ended = followed.and_then(|ended| last.map(|()| ended));
+        let ended =
+            followed.and_then(|ended| if is_stopped { Ok(ended) } else { last.map(|()| ended) });
         if let Some(decode) = &self.decode {
             decode.tell(&mut link);
         }
@@ -114,18 +118,18 @@ impl Live<'_> {
         (self.session.view(&link), ended)
     }
 
-    /// Takes what waits of a sensor that the user ended: it came before. A recording is not read to its end.
-    fn empty(&mut self, ended: Ended, face: &mut dyn Face, link: &mut Link) -> Result<(), Error> {
-        if matches!(ended, Ended::Quit | Ended::Signal(_)) && self.decode.is_some() {
-            // What comes meanwhile is not waited for.
-            for _ in 0..port::AHEAD {
-                let Ok(arrival) = self.port.arrivals.try_recv() else { break };
-                if !self.arrive(arrival, face, link)? {
-                    break;
-                }
+    /// Takes what waits of a sensor: it came before the end. A recording is not read to its own.
+    fn empty(&mut self, face: &mut dyn Face, link: &mut Link) {
+        if self.decode.is_none() {
+            return;
+        }
+        // What comes meanwhile is not waited for.
+        for _ in 0..port::AHEAD {
+            let Ok(arrival) = self.port.arrivals.try_recv() else { break };
+            if !self.arrive(arrival, face, link).is_ok_and(|goes_on| goes_on) {
+                break;
             }
         }
-        Ok(())
     }
 
     fn follow(
@@ -169,11 +173,11 @@ impl Live<'_> {
             if let Some((_, every)) = &self.keep.checkpoint
                 && kept.elapsed() >= *every
             {
-                let now = self.keep.checkpoint(&self.session, false).err().map(|e| e.to_string());
-                if self.keep.unwritten != now {
-                    now.iter()
-                        .for_each(|why| face.say(&format!("warning: {why}; it is tried again")));
-                    self.keep.unwritten = now;
+                let before = self.keep.unwritten.take();
+                if let Err(why) = self.keep.checkpoint(&self.session, false)
+                    && before != self.keep.unwritten
+                {
+                    face.say(&format!("warning: {why}; it is tried again"));
                 }
                 kept = Instant::now();
             }

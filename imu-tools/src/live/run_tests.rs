@@ -51,6 +51,9 @@ impl Decode for Text {
     fn reopened(&mut self, _: &mut Vec<Step>) {}
 
     fn finish(&mut self, _: &mut Vec<Step>) -> Result<(), Error> {
+        if self.bytes > 0 && self.refused == self.bytes {
+            return Err(Error::data("of no known protocol"));
+        }
         Ok(())
     }
 
@@ -240,16 +243,16 @@ impl Face for Keys {
     }
 }
 
-/// A session of so many lines that wait already, in which these keys are pressed, one after the other.
+/// A session of lines that wait already, in which these keys are pressed, one after the other.
 fn press(
-    lines: i64,
+    lines: impl Iterator<Item = String>,
     keep: Keep,
     save: &mut dyn FnMut(&View) -> Result<Option<String>, Error>,
     keys: Vec<Key>,
 ) -> (View, Result<Ended, Error>, Keys) {
     // The device stays there.
     let (to, arrivals) = std::sync::mpsc::sync_channel(1000);
-    for bytes in (0..lines).map(|number| line(number).into_bytes()) {
+    for bytes in lines.map(String::into_bytes) {
         to.send(Arrival::Bytes { arrival_ns: 0, bytes }).unwrap();
     }
     let live = Live {
@@ -268,16 +271,48 @@ fn press(
 #[test]
 fn what_came_before_the_end_is_taken() {
     for (key, how) in [(Key::Quit, Ended::Quit), (Key::Interrupt, Ended::Signal(2))] {
-        let (view, ended, _) = press(900, Keep::default(), &mut |_| Ok(None), vec![key]);
+        let (view, ended, _) =
+            press((0..900).map(line), Keep::default(), &mut |_| Ok(None), vec![key]);
         assert_eq!((view.samples[0], ended.unwrap()), (900, how));
     }
+}
+
+/// It is not the way in which a port fails that is not known yet.
+#[test]
+fn what_the_user_ends_has_ended_so_though_its_protocol_is_unknown() {
+    for (key, how) in [(Key::Quit, Ended::Quit), (Key::Interrupt, Ended::Signal(2))] {
+        let lines = std::iter::once("who knows\n".to_owned());
+        let (view, ended, _) = press(lines, Keep::default(), &mut |_| Ok(None), vec![key]);
+        assert_eq!((view.link.refused, ended.unwrap()), (10, how));
+    }
+}
+
+#[test]
+fn a_checkpoint_that_cannot_be_written_is_in_sight_until_one_can() {
+    let folder = tempfile::tempdir().unwrap();
+    let away = folder.path().join("away");
+    fs::create_dir(&away).unwrap();
+    let place = Place::take(&away.join("c")).unwrap();
+    let mut keep = Keep { checkpoint: Some((place, Duration::ZERO)), ..Keep::default() };
+    let mut session = Session::new("it", &Options::default());
+    let mut block = Block::default();
+    block.gyroscope.push(Sample { stamp_ns: 0, value: [0.0; 3] });
+    session.take(&mut block);
+    assert!(keep.checkpoint(&session, false).unwrap());
+    let there = folder.path().join("there");
+    fs::rename(&away, &there).unwrap();
+    assert!(keep.checkpoint(&session, false).is_err());
+    assert!(keep.troubles()[0].starts_with("no checkpoint: "), "{:?}", keep.troubles());
+    fs::rename(&there, &away).unwrap();
+    assert!(keep.checkpoint(&session, false).unwrap());
+    assert!(keep.troubles().is_empty());
 }
 
 #[test]
 fn a_recording_that_was_given_up_stays_in_sight() {
     let keep = Keep { record: Some(Box::new(Full)), ..Keep::default() };
     let keys = [vec![Key::Mark; 40], vec![Key::Quit]].concat();
-    let (_, _, face) = press(9, keep, &mut |_| Ok(None), keys);
+    let (_, _, face) = press((0..9).map(line), keep, &mut |_| Ok(None), keys);
     assert_eq!(face.lost, ["recorded no longer: the disk is full"]);
     assert!(face.said.last().unwrap().starts_with("mark 40 at"), "{:?}", face.said);
 }
@@ -302,7 +337,7 @@ fn saving_says_what_was_saved_and_what_was_not() {
     ];
     for (checkpoint, results, wanted) in cases {
         let keys = vec![Key::Save, Key::Quit];
-        let (_, ended, face) = press(9, keep(checkpoint), &mut |_| results(), keys);
+        let (_, ended, face) = press((0..9).map(line), keep(checkpoint), &mut |_| results(), keys);
         assert_eq!(ended.unwrap(), Ended::Quit);
         assert_eq!(face.said, [wanted]);
     }

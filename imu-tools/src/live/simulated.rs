@@ -150,6 +150,7 @@ impl Sink for Sensor {
                 }),
                 count: Some(self.number(stamp_ns)),
                 celsius: self.celsius,
+                ..Message::default()
             };
             self.encoder.encode(&message, &mut bytes);
             Ok(())

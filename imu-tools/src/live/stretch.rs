@@ -3,11 +3,15 @@
 
 use super::protocol::Tally;
 
-/// Bytes of a stretch.
+/// Bytes of a stretch, and of one behind bad ones: that all is well again shows sooner.
 const STRETCH: u64 = 16_384;
+const SHORT: u64 = 1024;
 
 /// The part of a stretch that is refused with a wrong baud rate.
 const TOO_MANY: f64 = 0.95;
+
+/// So many messages are no chance: a sensor sent them.
+const FEWEST: u64 = 8;
 
 /// So many bytes without a sample are of a device that sends none.
 const FRUITLESS: u64 = 65_536;
@@ -29,7 +33,6 @@ pub struct Stretch {
     /// What had come with the latest sample.
     sampled: Tally,
     amiss: Option<Amiss>,
-    had_samples: bool,
 }
 
 impl Stretch {
@@ -42,11 +45,10 @@ impl Stretch {
             }
         }
         let bytes = tally.bytes.saturating_sub(self.began.bytes);
-        if bytes > STRETCH {
+        let is_bad = matches!(self.amiss, Some(Amiss::Refused(_)));
+        if bytes > if is_bad { SHORT } else { STRETCH } {
             let share = tally.refused.saturating_sub(self.began.refused) as f64 / bytes as f64;
-            let is_refused = share > TOO_MANY;
-            self.had_samples |= !is_refused && tally.messages > self.began.messages;
-            self.amiss = is_refused.then_some(Amiss::Refused(share));
+            self.amiss = (share > TOO_MANY).then_some(Amiss::Refused(share));
             self.began = tally;
         }
         let fruitless = tally.bytes.saturating_sub(self.sampled.bytes);
@@ -60,9 +62,9 @@ impl Stretch {
         self.amiss
     }
 
-    /// Whether a stretch before was as it should be.
+    /// Whether a sensor was heard before.
     pub fn had_samples(&self) -> bool {
-        self.had_samples
+        self.sampled.messages >= FEWEST
     }
 }
 
@@ -91,11 +93,27 @@ mod tests {
             stretch.look(more(&mut tally, 4096, 4096, 0));
         }
         stretch.look(more(&mut tally, 4096, 4050, 1));
-        assert!(matches!(stretch.amiss(), Some(Amiss::Refused(share)) if share > 0.99));
-        for _ in 0..10 {
-            stretch.look(more(&mut tally, 4096, 100, 100));
+        assert!(matches!(stretch.amiss(), Some(Amiss::Refused(share)) if share > TOO_MANY));
+        // It stays so until good ones come, and those show at once.
+        for _ in 0..9 {
+            stretch.look(more(&mut tally, 512, 512, 0));
+            assert!(matches!(stretch.amiss(), Some(Amiss::Refused(_))));
+        }
+        for _ in 0..3 {
+            stretch.look(more(&mut tally, 512, 10, 10));
         }
         assert_eq!(stretch.amiss(), None);
+    }
+
+    #[test]
+    fn a_few_messages_are_a_sensor_and_one_is_chance() {
+        for (messages, was_heard) in [(1, false), (FEWEST, true)] {
+            let (mut stretch, mut tally) = (Stretch::default(), Tally::default());
+            stretch.look(more(&mut tally, 64 * messages, 0, messages));
+            stretch.look(more(&mut tally, STRETCH, STRETCH, 0));
+            assert!(matches!(stretch.amiss(), Some(Amiss::Refused(_))), "{messages}");
+            assert_eq!(stretch.had_samples(), was_heard);
+        }
     }
 
     #[test]
@@ -108,7 +126,7 @@ mod tests {
         stretch.look(more(&mut tally, 1, 0, 0));
         assert_eq!(stretch.amiss(), Some(Amiss::Fruitless(65_537)));
         assert!(!stretch.had_samples());
-        stretch.look(more(&mut tally, 40_000, 0, 1));
+        stretch.look(more(&mut tally, 40_000, 0, FEWEST));
         assert_eq!(stretch.amiss(), None);
         for _ in 0..20 {
             stretch.look(more(&mut tally, 4096, 0, 0));

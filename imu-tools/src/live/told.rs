@@ -56,23 +56,37 @@ impl Heard {
     }
 }
 
+/// What is amiss and was well for so long is said again.
+const WELL: Duration = Duration::from_secs(60);
+
 /// What the user was told of the stream.
-#[derive(Default)]
 pub(super) struct Told {
     learnt: Option<String>,
     amiss: Option<String>,
+    /// When something was amiss last.
+    at: Instant,
+    patience: Duration,
+}
+
+impl Default for Told {
+    fn default() -> Self {
+        Self { learnt: None, amiss: None, at: Instant::now(), patience: WELL }
+    }
 }
 
 impl Told {
-    /// Says what was found out about it, and what is wrong with it, once.
+    /// Says what was found out about it, and what is wrong with it: once, and again where it was well meanwhile.
     pub(super) fn tell(&mut self, link: &Link, face: &mut dyn Face) {
         if link.learnt != self.learnt {
             self.learnt.clone_from(&link.learnt);
             self.learnt.iter().for_each(|sentence| face.say(sentence));
         }
-        if link.amiss.is_some() && link.amiss != self.amiss {
+        let Some(why) = &link.amiss else { return };
+        let was_well = self.at.elapsed() >= self.patience;
+        self.at = Instant::now();
+        if was_well || link.amiss != self.amiss {
             self.amiss.clone_from(&link.amiss);
-            link.amiss.iter().for_each(|why| face.say(&format!("warning: {}: {why}", link.name)));
+            face.say(&format!("warning: {}: {why}", link.name));
         }
     }
 }
@@ -103,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_amiss_is_said_once() {
+    fn what_is_amiss_is_said_once_and_again_where_it_was_well_for_long() {
         let (mut told, mut said) = (Told::default(), Said::default());
         let of = |amiss: Option<&str>| Link {
             name: "it".into(),
@@ -114,6 +128,10 @@ mod tests {
             told.tell(&of(amiss), &mut said);
         }
         assert_eq!(said.0, ["warning: it: a", "warning: it: b"]);
+        told.patience = Duration::ZERO;
+        told.tell(&of(None), &mut said);
+        told.tell(&of(Some("b")), &mut said);
+        assert_eq!(said.0[2..], ["warning: it: b"]);
     }
 
     #[test]

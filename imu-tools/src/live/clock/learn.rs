@@ -51,10 +51,10 @@ pub(super) fn from(held: &[(i64, Message)], before: Option<&Track>) -> Option<Tr
         }))
         .map(|((arrival_ns, _), units)| (units, arrival_ns.saturating_sub(*origin_ns) as f64))
         .collect();
-    let ticks = held.iter().find_map(|(_, message)| message.ticks);
-    let tick_ns = ticks.map(|t| 1e9 / t.per_second.max(1) as f64);
-    let tick_ns = tick_ns.filter(|_| source == Source::Ticks);
-    let known = before.filter(|b| b.source() == source).map(Track::unit_ns);
+    let per_second = held.iter().find_map(|(_, m)| Reading::of(source, m)?.per_second);
+    let tick_ns = per_second.map(|ticks| 1e9 / ticks.max(1) as f64);
+    let known = before.filter(|b| b.source() == source && b.per_second() == per_second);
+    let known = known.map(Track::unit_ns);
     let known = known.or(tick_ns);
     let ends = ends_of_bursts(&points);
     let measured = slope(&ends);
@@ -78,7 +78,9 @@ pub(super) fn from(held: &[(i64, Message)], before: Option<&Track>) -> Option<Tr
         learnt_from: held.len() as u64,
         grain,
         unit_ns,
-        tick_ns,
+        // A unit that was guessed and is another says nothing of how long the sensor took.
+        tick_ns: tick_ns.filter(|tick_ns| (unit_ns / tick_ns - 1.0).abs() <= KNOWN),
+        per_second,
         reading,
         offset_ns: earliest,
     }))

@@ -194,6 +194,38 @@ fn an_interval_is_that_of_the_readings_from_the_first_message_on() {
     );
 }
 
+/// Of a text whose milliseconds were taken for nanoseconds, say: stamps are right, and so must increments be.
+#[test]
+fn an_interval_is_by_the_host_where_the_ticks_are_of_another_unit() {
+    let message = |k: i64| with_ticks(k as u64 * 10, None);
+    let (clock, all) = taken((0..3000).map(|k| (read(k * 10 * MS), message(k))));
+    assert_eq!((clock.status().source, clock.status().clock_ppm), (Source::Ticks, None));
+    // Bursts of 16 ms show it over two seconds to 1 %, the median of slopes far better.
+    assert!(all.iter().all(|taken| (taken.interval_s - 0.01).abs() < 1e-4), "{:?}", all[0]);
+    // Nor is it believed behind a restart that is too short to show it.
+    let behind =
+        (3000..3010).map(|k| (read(k * 10 * MS), with_ticks(k as u64 * 10 - 30_000, None)));
+    let (_, all) = taken((0..3000).map(|k| (read(k * 10 * MS), message(k))).chain(behind));
+    assert!(all[3000].restart && (all[3005].interval_s - 0.01).abs() < 1e-4, "{:?}", all[3005]);
+}
+
+/// As where MAVLink's HIGHRES_IMU comes no more and RAW_IMU takes its place: both count microseconds of one clock.
+#[test]
+fn another_stream_is_a_restart_and_its_rate_no_loss() {
+    let first = (0..4000_i64).map(|k| (read(k * 5 * MS), with_ticks(k as u64 * 5_000, None)));
+    let second = (1050..2050_i64).map(|k| {
+        let message = with_ticks(k as u64 * 20_000, None);
+        (read(k * 20 * MS), Message { stream: 1, ..message })
+    });
+    let (clock, all) = taken(first.chain(second));
+    let status = clock.status();
+    assert_eq!((all.len(), status.restarts), (5000, 1));
+    assert!((status.rate_hz - 50.0).abs() < 0.05, "{status:?}");
+    // One second without a message lies between them, of which nothing is certain.
+    let [(4000, lost)] = lost(&all)[..] else { panic!("{:?}", lost(&all)) };
+    assert!(all[4000].restart && !all[4000].certain && lost.abs_diff(49) <= 1, "{lost}");
+}
+
 /// A device may hand over at once what it gathered while the port was closed, or all that it lost power with.
 #[test]
 fn a_port_that_was_opened_again_begins_anew_without_a_clock() {

@@ -88,8 +88,10 @@ pub(super) struct Start {
     pub grain: u64,
     /// Host time of a unit.
     pub unit_ns: f64,
-    /// What the sensor says that it is.
+    /// What the sensor says that it is, where that is so.
     pub tick_ns: Option<f64>,
+    /// Units in a second, as the sensor says.
+    pub per_second: Option<u64>,
     pub reading: Option<Reading>,
     /// When the first message was sent, as seen from its arrival.
     pub offset_ns: f64,
@@ -107,6 +109,7 @@ pub(super) struct Track {
     rounding: f64,
     unit_ns: f64,
     tick_ns: Option<f64>,
+    per_second: Option<u64>,
     reading: Option<Reading>,
     /// Units of the messages since, which had no reading.
     unread: u64,
@@ -156,6 +159,7 @@ impl Track {
             rounding: 0.5 * start.grain as f64,
             unit_ns: start.unit_ns,
             tick_ns: start.tick_ns,
+            per_second: start.per_second,
             reading: start.reading,
             unread: 0,
             ahead_ns: UNKNOWN_NS,
@@ -185,6 +189,11 @@ impl Track {
 
     pub fn source(&self) -> Source {
         self.source
+    }
+
+    /// Units in a second, as the sensor says, if it does.
+    pub fn per_second(&self) -> Option<u64> {
+        self.per_second
     }
 
     /// Host time of a unit, ns, as it is known by now.

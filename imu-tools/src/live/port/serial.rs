@@ -19,9 +19,12 @@ const RATES: [u32; 9] =
 /// How long each is listened to.
 const TRIAL: Duration = Duration::from_millis(700);
 
-/// How long the first byte is waited for: boards with a converter of their own start anew when their port is
-/// opened, behind a boot loader of two seconds.
+/// How long the first bytes are waited for, as many as can be judged: boards with a converter of their own start
+/// anew when their port is opened, behind a boot loader of two seconds.
 const BOOT: Duration = Duration::from_secs(4);
+
+/// How often all are tried.
+const ROUNDS: usize = 2;
 
 /// Bytes that are enough to judge a rate.
 const ENOUGH: usize = 2048;
@@ -161,11 +164,15 @@ fn lock(_: &SerialPort) -> io::Result<()> {
 }
 
 /// The first rate at which most of the bytes are part of frames, and the port at that rate: it is opened once,
-/// because many a board starts anew whenever its port is opened.
+/// because many a board starts anew whenever its port is opened. What came with pauses may have been such a
+/// board's beginning: the rates are then gone through once more.
 fn find_rate(path: &Path, expected: &Expected<'_>) -> Result<(SerialPort, u32), Error> {
     let mut port = claim(path).map_err(|e| refusal(path, &e))?;
-    let (mut heard, mut patience) = (Vec::new(), BOOT);
-    for rate in RATES {
+    let (mut most, mut patience, mut paused) = (Vec::new(), BOOT, false);
+    for (round, rate) in (0..ROUNDS).flat_map(|round| RATES.map(|rate| (round, rate))) {
+        if round > 0 && (most.is_empty() || !paused) {
+            break;
+        }
         match tune(&mut port, rate) {
             Ok(()) => {}
             // Not every adapter has every rate: the driver refuses it, or keeps another.
@@ -174,16 +181,17 @@ fn find_rate(path: &Path, expected: &Expected<'_>) -> Result<(SerialPort, u32), 
             }
             Err(e) => return Err(refusal(path, &e)),
         }
-        let bytes = listen(&port, std::mem::replace(&mut patience, TRIAL));
-        if (expected.refused)(&bytes).is_some_and(|share| share < TOO_MANY) {
+        let heard = listen(&port, std::mem::replace(&mut patience, TRIAL), expected.refused);
+        if (expected.refused)(&heard.bytes).is_some_and(|share| share < TOO_MANY) {
             return Ok((port, rate));
         }
-        if bytes.len() > heard.len() {
-            heard = bytes;
+        paused |= heard.paused;
+        if heard.bytes.len() > most.len() {
+            most = heard.bytes;
         }
     }
     let name = path.display();
-    if heard.is_empty() {
+    if most.is_empty() {
         return Err(Error::data(format!(
             "{name} is silent at all usual baud rates: see that the sensor has power and sends by \
              itself, or give its rate with --baud"
@@ -195,28 +203,36 @@ fn find_rate(path: &Path, expected: &Expected<'_>) -> Result<(SerialPort, u32), 
     };
     Err(Error::data(format!(
         "what {name} sends is {what} at any usual baud rate: {way_out}; the first bytes are {}",
-        super::super::shown::bytes(&heard)
+        super::super::shown::bytes(&most)
     )))
 }
 
-/// What comes in a short time, once something does.
-fn listen(port: &SerialPort, patience: Duration) -> Vec<u8> {
-    let (mut bytes, mut buffer) = (Vec::new(), [0; PIECE]);
-    let mut end = Instant::now() + patience;
-    while Instant::now() < end && bytes.len() < ENOUGH {
+/// What came at one rate.
+#[derive(Default)]
+struct Heard {
+    bytes: Vec<u8>,
+    /// For a while nothing did.
+    paused: bool,
+}
+
+/// What comes in a short time, once it is as much as can be judged.
+fn listen(port: &SerialPort, patience: Duration, refused: &dyn Fn(&[u8]) -> Option<f64>) -> Heard {
+    let (mut heard, mut buffer) = (Heard::default(), [0; PIECE]);
+    let (mut end, mut is_judged) = (Instant::now() + patience, false);
+    while Instant::now() < end && heard.bytes.len() < ENOUGH {
         match port.read(&mut buffer) {
             Ok(0) => break,
             Ok(n) => {
-                if bytes.is_empty() {
-                    end = Instant::now() + TRIAL;
+                heard.bytes.extend_from_slice(buffer.get(..n).unwrap_or_default());
+                if !is_judged && refused(&heard.bytes).is_some() {
+                    (end, is_judged) = (Instant::now() + TRIAL, true);
                 }
-                bytes.extend_from_slice(buffer.get(..n).unwrap_or_default());
             }
-            Err(e) if e.kind() == io::ErrorKind::TimedOut => {}
+            Err(e) if e.kind() == io::ErrorKind::TimedOut => heard.paused = true,
             Err(_) => break,
         }
     }
-    bytes
+    heard
 }
 
 /// Opens the device, and begins to read.
@@ -269,13 +285,12 @@ mod tests {
         connect(&path, 9600).unwrap();
     }
 
-    /// Such as many have that program themselves over their port: 0.8 s of silence after it was opened.
+    /// A board that starts anew when its port is opened, as many do that are programmed over it: it says
+    /// `banner`, and sends from `after` on. The rate at which it is heard.
     #[cfg(target_os = "linux")]
-    #[test]
-    fn a_board_that_starts_anew_when_its_port_is_opened_is_heard() {
+    fn rate_of_board(banner: &[u8], after: Duration) -> Result<u32, Error> {
         use std::os::fd::AsRawFd as _;
         use std::sync::atomic::{AtomicBool, Ordering};
-        const SENDS_AFTER: Duration = Duration::from_millis(800);
         let (mut board, theirs) = SerialPort::pair().unwrap();
         let path = fs::read_link(format!("/proc/self/fd/{}", theirs.as_raw_fd())).unwrap();
         board.set_read_timeout(Duration::from_millis(10)).unwrap();
@@ -283,25 +298,48 @@ mod tests {
         let over = AtomicBool::new(false);
         std::thread::scope(|scope| {
             scope.spawn(|| {
-                let mut opened = None;
+                let mut opened: Option<Instant> = None;
                 while !over.load(Ordering::Relaxed) {
                     // Other errors than that nothing came: nobody has the other end open.
                     let is_open = match board.read(&mut [0; 16]) {
                         Ok(_) => true,
                         Err(e) => e.kind() == io::ErrorKind::TimedOut,
                     };
-                    opened = is_open.then(|| opened.unwrap_or_else(Instant::now));
-                    if opened.is_some_and(|opened| opened.elapsed() > SENDS_AFTER) {
-                        board.write_all(&[b'1'; 64]).unwrap();
-                    } else if !is_open {
-                        std::thread::sleep(Duration::from_millis(10));
+                    match opened {
+                        _ if !is_open => std::thread::sleep(Duration::from_millis(10)),
+                        None => board.write_all(banner).unwrap(),
+                        Some(opened) if opened.elapsed() > after => {
+                            board.write_all(&[b'1'; 64]).unwrap();
+                        }
+                        Some(_) => {}
                     }
+                    opened = is_open.then(|| opened.unwrap_or_else(Instant::now));
                 }
             });
-            let refused = |bytes: &[u8]| (bytes.len() >= 64).then_some(0.0);
+            let refused = |bytes: &[u8]| {
+                let noise = bytes.iter().filter(|byte| **byte != b'1').count();
+                (bytes.len() >= 64).then_some(noise as f64 / bytes.len() as f64)
+            };
             let found = find_rate(&path, &Expected { protocol: None, refused: &refused });
             over.store(true, Ordering::Relaxed);
-            assert_eq!(found.unwrap().1, RATES[0]);
-        });
+            found.map(|(_, rate)| rate)
+        })
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_board_that_starts_anew_when_its_port_is_opened_is_heard() {
+        for banner in ["", "\0\0\r"] {
+            let rate = rate_of_board(banner.as_bytes(), Duration::from_millis(1500));
+            assert_eq!(rate.unwrap(), RATES[0], "{banner:?}");
+        }
+    }
+
+    /// What its loader says is of no protocol, and then all rates are tried before it sends.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_board_whose_loader_speaks_is_heard_in_the_end() {
+        let after = TRIAL * (RATES.len() as u32 + 1);
+        rate_of_board(&[b'x'; 80], after).unwrap();
     }
 }

@@ -37,6 +37,7 @@ fn sample(view: View<'_>) -> Message {
         ticks: Some(Ticks { value: view.time_ns(), per_second: 1_000_000_000, wraps_at: None }),
         count: Some(Count { value: view.number().into(), wraps_at: 1 << 16 }),
         celsius: view.celsius().map(f64::from),
+        ..Message::default()
     }
 }
 

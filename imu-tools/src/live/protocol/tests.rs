@@ -20,6 +20,7 @@ pub fn message(i: u32) -> Message {
         }),
         count: Some(Count { value: i & 0xFFFF, wraps_at: 1 << 16 }),
         celsius: Some(21.5),
+        ..Message::default()
     }
 }
 

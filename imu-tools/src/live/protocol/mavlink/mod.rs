@@ -4,9 +4,11 @@
 //! is that of X.25 (0x1021 reflected, from all ones) with a byte of the message's definition behind;
 //! version 2 leaves trailing zeros of the payload out, and may have a signature, which is not verified.
 //!
-//! An autopilot sends several of these of the same sensor, and those of other sensors: only the best that
-//! came is handed out, of one sender, in the order above; HIGHRES_IMU of its first instance only. Where that
-//! comes no more, another message of the same sensor takes its place for good.
+//! An autopilot sends several of these of the same sensor, and those of other sensors: one stream is handed
+//! out, of one sender, the best in the order above; HIGHRES_IMU of its first instance only. Which sensor it is
+//! is chosen among the first 1024 that come, whatever the sender. After that only messages of the same sensor
+//! are taken: a better one at once, and another where the present one comes no more. One that ceased is gone
+//! back to only where its heir ceases too. Each such change is a stream of its own ([`Message::stream`]).
 //! SCALED_IMU is in 0.001 g and 0.001 rad/s. RAW_IMU has no unit by its definition: it is read as
 //! ArduPilot fills it, as SCALED_IMU; who sends counts of a converter gets values of no meaning.
 //! Time is µs or ms of the sender; that of ms is coarse, and wraps at 32 bits. The sequence number counts all
@@ -35,7 +37,9 @@ const PREFERRED: [u32; 5] = [HIGHRES_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3, 
 
 /// Those of a sender's first sensor.
 const FIRST: [u32; 3] = [HIGHRES_IMU, SCALED_IMU, RAW_IMU];
-/// After so many messages without the one that was taken it comes no more.
+/// Messages among which the sensor is chosen.
+const CHOICE: u32 = 1024;
+/// After so many others of the same sensor the one that was taken comes no more.
 const PATIENCE: u32 = 1024;
 
 const MILLI_G: f64 = 9.80665e-3;
@@ -45,10 +49,14 @@ const MILLI: f64 = 1e-3;
 #[derive(Default)]
 pub struct Mavlink {
     taken: Option<Stream>,
-    /// Messages of other streams since the latest of this one.
+    /// Which of the streams that were taken that is.
+    number: u8,
+    /// Messages with samples, whoever's, up to [`CHOICE`].
+    came: u32,
+    /// Other messages of the same sensor since the latest of this stream.
     passed: u32,
-    /// The stream that came no more: it is not gone back to.
-    ceased: Option<Stream>,
+    /// Ranks of those that came no more, a bit each: they are not better any more.
+    ceased: u8,
 }
 
 /// A message of a sender, by its rank.
@@ -64,6 +72,39 @@ impl Stream {
             PREFERRED.get(stream.rank).is_some_and(|message| FIRST.contains(message))
         };
         self.sender == other.sender && is_first(self) && is_first(other)
+    }
+
+    fn bit(self) -> u8 {
+        1 << self.rank
+    }
+}
+
+impl Mavlink {
+    /// Whether a message of this stream is taken.
+    fn takes(&mut self, stream: Stream) -> bool {
+        let is_chosen = self.came >= CHOICE;
+        self.came = self.came.saturating_add(1).min(CHOICE);
+        let Some(taken) = self.taken else {
+            self.taken = Some(stream);
+            return true;
+        };
+        if stream == taken {
+            self.passed = 0;
+            return true;
+        }
+        let is_same = stream.is_of_the_sensor_of(taken);
+        let is_better = stream.rank < taken.rank && self.ceased & stream.bit() == 0;
+        let is_heir = is_same && self.passed >= PATIENCE;
+        if is_heir {
+            self.ceased |= taken.bit();
+        } else if !is_better || is_chosen && !is_same {
+            self.passed = self.passed.saturating_add(is_same.into());
+            return false;
+        }
+        self.ceased &= !stream.bit();
+        (self.taken, self.passed) = (Some(stream), 0);
+        self.number = self.number.wrapping_add(1);
+        true
     }
 }
 
@@ -101,21 +142,10 @@ impl Wire for Mavlink {
         let Some(rank) = PREFERRED.iter().position(|message| *message == view.message()) else {
             return;
         };
-        let stream = Stream { rank, sender: view.sender() };
-        let taken = *self.taken.get_or_insert(stream);
-        let is_better = rank < taken.rank && self.ceased != Some(stream);
-        let is_heir = self.passed >= PATIENCE && stream.is_of_the_sensor_of(taken);
-        if is_heir {
-            self.ceased = Some(taken);
-        }
-        if is_better || is_heir {
-            self.taken = Some(stream);
-        }
-        if self.taken == Some(stream) {
-            self.passed = 0;
-            view.sample().into_iter().for_each(each);
-        } else {
-            self.passed = self.passed.saturating_add(1);
+        // A frame without a sample (another instance, neither sensor updated) says nothing of its stream.
+        let Some(sample) = view.sample() else { return };
+        if self.takes(Stream { rank, sender: view.sender() }) {
+            each(Message { stream: self.number, ..sample });
         }
     }
 }

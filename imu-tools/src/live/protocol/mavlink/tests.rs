@@ -44,26 +44,81 @@ fn of_one_sensor_the_best_message_is_taken() {
     assert_eq!(both, [123_456_789_012, 4_000_000_000, 987_654_321]);
 }
 
-/// And of another sensor nothing is taken, however long the first is silent.
+/// A frame of version 2 whose bytes at `at` are others, with the CRC of that.
+fn with<const N: usize>(mut frame: [u8; N], at: usize, bytes: &[u8]) -> [u8; N] {
+    frame[at..at + bytes.len()].copy_from_slice(bytes);
+    let extra = crc_extra::of(View(&frame).message()).unwrap();
+    let crc = crc(frame[1..N - CRC].iter().chain([&extra]));
+    frame[N - CRC..].copy_from_slice(&crc.to_le_bytes());
+    frame
+}
+
+/// Which streams were handed out, by their ticks, one after the other, and by their numbers.
+fn streams(frames: &[&[u8]]) -> Vec<(u64, u8)> {
+    let mut streams: Vec<_> =
+        messages(frames).iter().map(|m| (m.ticks.unwrap().value, m.stream)).collect();
+    streams.dedup();
+    streams
+}
+
+const HIGHRES_TICKS: u64 = 987_654_321;
+const SCALED_TICKS: u64 = 4_000_000_000;
+const RAW_TICKS: u64 = 123_456_789_012;
+
 #[test]
 fn where_the_best_comes_no_more_another_of_the_same_sensor_takes_its_place() {
-    let patience = PATIENCE as usize;
+    let many = PATIENCE as usize + 3;
     let mut frames = vec![&HIGHRES_IMU_V2[..]];
-    frames.extend(vec![&RAW_IMU_V2[..]; patience + 3]);
-    // It comes again, and better ones than the present do.
-    frames.extend([&HIGHRES_IMU_V2[..], &RAW_IMU_V2, &SCALED_IMU_V2, &RAW_IMU_V2, &SCALED_IMU_V2]);
-    let taken: Vec<u64> = messages(&frames).iter().map(|m| m.ticks.unwrap().value).collect();
-    let (highres, raw, scaled) = (987_654_321, 123_456_789_012, 4_000_000_000);
-    assert_eq!(taken, [highres, raw, raw, raw, raw, scaled, scaled]);
-    let mut other = RAW_IMU_V2;
-    other[5] = 99;
-    let [rest @ .., low, high] = &mut other;
-    let extra = crc_extra::of(RAW_IMU).unwrap();
-    [*low, *high] = crc(rest[1..].iter().chain([&extra])).to_le_bytes();
+    frames.extend(vec![&RAW_IMU_V2[..]; many]);
+    assert_eq!(messages(&frames).len(), 1 + 3);
+    // It comes again, and another that is better than the present one.
+    frames.extend([&HIGHRES_IMU_V2[..], &RAW_IMU_V2, &SCALED_IMU_V2, &HIGHRES_IMU_V2]);
+    let mut wanted = vec![(HIGHRES_TICKS, 0), (RAW_TICKS, 1), (SCALED_TICKS, 2)];
+    assert_eq!(streams(&frames), wanted);
+    // That ceases, too: neither it nor the first are better any more.
+    frames.extend(vec![&RAW_IMU_V2[..]; many]);
+    frames.extend([&HIGHRES_IMU_V2[..], &SCALED_IMU_V2, &RAW_IMU_V2]);
+    wanted.push((RAW_TICKS, 3));
+    assert_eq!(streams(&frames), wanted);
+    // And if nothing else is left it is gone back to.
+    frames.extend(vec![&HIGHRES_IMU_V2[..]; many]);
+    wanted.push((HIGHRES_TICKS, 4));
+    assert_eq!(streams(&frames), wanted);
+}
+
+/// Another sender's, and another sensor's of the same sender.
+#[test]
+fn once_a_sensor_is_chosen_no_other_is_taken() {
+    let many = (CHOICE + PATIENCE) as usize;
+    let component = 6;
+    let another_raw = with(RAW_IMU_V2, component, &[99]);
+    let another_highres = with(HIGHRES_IMU_V2, component, &[99]);
+    for other in [&another_raw[..], &another_highres, &SIGNED] {
+        // However long the chosen one is silent,
+        let mut frames = vec![&HIGHRES_IMU_V2[..]];
+        frames.extend(vec![other; many]);
+        assert_eq!(streams(&frames), [(HIGHRES_TICKS, 0)]);
+        // and also where a worse message took its place.
+        let mut frames = vec![&HIGHRES_IMU_V2[..]];
+        frames.extend(vec![&RAW_IMU_V2[..]; many]);
+        frames.extend(vec![other; many]);
+        assert_eq!(streams(&frames), [(HIGHRES_TICKS, 0), (RAW_TICKS, 1)]);
+    }
+    // Before that the better one is.
+    assert_eq!(streams(&[&another_raw, &SIGNED]).len(), 2);
+    assert_eq!(streams(&[&another_raw]).len(), 1);
+}
+
+#[test]
+fn a_frame_without_a_sample_is_of_no_stream() {
+    let updated = 10 + 60;
+    let empty = with(HIGHRES_IMU_V2, updated, &[0, 0]);
     let mut frames = vec![&HIGHRES_IMU_V2[..]];
-    frames.extend(vec![&other[..]; patience + 3]);
-    assert_eq!(messages(&frames).len(), 1);
-    assert_eq!(messages(&[&other]).len(), 1);
+    for _ in 0..=PATIENCE {
+        frames.extend([&RAW_IMU_V2[..], &empty]);
+    }
+    assert_eq!(streams(&frames), [(HIGHRES_TICKS, 0), (RAW_TICKS, 1)]);
+    assert_eq!(streams(&[&empty, &RAW_IMU_V2]), [(RAW_TICKS, 0)]);
 }
 
 #[test]

@@ -13,10 +13,10 @@ use crate::recording::{ForceUnit, RateUnit, ReadOptions, TimeUnit};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     columns: Vec<Column>,
-    /// Fields of a row, where a header told them all.
+    /// Fields of a row: a header told them all, or two rows that followed each other agreed.
     width: Option<usize>,
-    /// `None` before it.
-    first_row: Option<FirstRow>,
+    /// What the latest row showed, or, once the width is known, that by which it was.
+    seen: Option<Seen>,
     /// Unit of time, where it is told.
     pub time: Option<TimeUnit>,
     rate: RateUnit,
@@ -28,9 +28,9 @@ pub struct Layout {
     granted: bool,
 }
 
-/// What the first row shows.
+/// What a row shows, written as the first one was.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct FirstRow {
+struct Seen {
     dialect: Dialect,
     fields: usize,
 }
@@ -83,7 +83,7 @@ impl Layout {
 
     /// Whether a header told the same; a layout that has seen rows knows more.
     pub fn tells_as(&self, other: &Self) -> bool {
-        let told = |layout: &Self| Self { first_row: None, ..layout.clone() };
+        let told = |layout: &Self| Self { seen: None, ..layout.clone() };
         told(self) == told(other)
     }
 
@@ -101,7 +101,7 @@ impl Layout {
         let granted =
             rate.is_none() && has(Column::Rate(0)) || force.is_none() && has(Column::Force(0));
         Ok(Self {
-            first_row: None,
+            seen: None,
             width: None,
             time,
             rate: rate.unwrap_or(RateUnit::RadPerS),
@@ -113,17 +113,23 @@ impl Layout {
         })
     }
 
-    /// Keeps what the first row shows.
-    pub fn see(&mut self, row: &[u8]) {
-        self.first_row.get_or_insert_with(|| {
-            let dialect = Dialect::of(row);
-            FirstRow { dialect, fields: dialect.fields(row).count() }
-        });
+    /// Learns from a row; whether it can be read: one that has more fields than were told may be two, of which
+    /// the end of one and the line end between them were lost, until the next row has as many.
+    pub fn see(&mut self, row: &[u8]) -> bool {
+        if self.width.is_none() || self.seen.is_none() {
+            let dialect = self.seen.map_or_else(|| Dialect::of(row), |seen| seen.dialect);
+            let fields = dialect.fields(row).count();
+            let agreed = self.seen.is_some_and(|seen| seen.fields == fields);
+            self.width = self.width.or(agreed.then_some(fields));
+            self.seen = Some(Seen { dialect, fields });
+        }
+        let fields = self.seen.map_or(0, |seen| seen.fields);
+        self.width.is_some() || fields <= self.columns.len()
     }
 
     /// The numbers of a line; `None` where it lacks some, or one is none.
     pub fn row<'a>(&self, line: &'a [u8]) -> Option<Row<'a>> {
-        let dialect = self.first_row.map_or_else(|| Dialect::of(line), |first| first.dialect);
+        let dialect = self.seen.map_or_else(|| Dialect::of(line), |seen| seen.dialect);
         let (mut rate, mut force) = (Triple::default(), Triple::default());
         let (mut seconds, mut nanoseconds, mut units, mut celsius) = (None, None, None, None);
         let mut fields = dialect.fields(line);
@@ -143,18 +149,9 @@ impl Layout {
                 Column::Temperature => celsius = value(dialect, field),
             }
         }
-        // Of two lines, the end of one and the line end between them may be lost. A row may have more fields than
-        // were told, as many as the first.
-        let columns = self.columns.len();
-        let joined = match (self.width, self.first_row) {
-            (Some(width), _) => fields.skip(width - columns).any(|field| !field.is_empty()),
-            (None, Some(first)) => {
-                let more = fields.count();
-                more + 1 >= columns && columns + more > first.fields
-            }
-            (None, None) => false,
-        };
-        if joined {
+        // Two lines, the line end between them lost.
+        let more = self.width.map(|width| width.saturating_sub(self.columns.len()));
+        if more.is_some_and(|more| fields.skip(more).any(|field| !field.is_empty())) {
             return None;
         }
         let halves = seconds.zip(nanoseconds);

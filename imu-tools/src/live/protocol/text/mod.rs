@@ -143,7 +143,9 @@ impl Wire for Text {
             }
         }
         let Some(layout) = &mut self.layout else { return };
-        layout.see(row);
+        if !layout.see(row) {
+            return;
+        }
         let kind = if layout.increments { Kind::Increments { over_s: None } } else { Kind::Rates };
         let Some(row) = layout.row(row) else { return };
         let ticks = row.time.and_then(|time| self.clock.ticks(time));
@@ -153,8 +155,8 @@ impl Wire for Text {
                 accelerometer: row.force,
                 kind,
                 ticks,
-                count: None,
                 celsius: row.celsius,
+                ..Message::default()
             });
         }
     }

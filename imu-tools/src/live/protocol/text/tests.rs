@@ -60,12 +60,20 @@ fn columns_are_told_or_customary_or_unknown() {
 }
 
 #[test]
-fn a_row_may_have_as_many_fields_beside_those_told_as_the_first() {
+fn a_row_may_have_more_fields_than_were_told_as_many_as_two_that_follow_each_other() {
+    let (three, joined) = ("1,2,3\n", "1,2,31,2,3\n");
     let six = "1,2,3,4,5,6\n";
-    let messages = read_with("ax,ay,az", &format!("\n{six}{six}1,2,3,4,5,61,2,3,4,5,6\n{six}"));
-    assert_eq!(messages.len(), 3);
-    assert_eq!(messages[2].accelerometer, Some([1.0, 2.0, 3.0]));
-    assert_eq!(read_with("ax,ay,az", "\n1,2,3\n1,2,31,2,3\n1,2,3,4\n").len(), 2);
+    for (rows, wanted) in [
+        (&[three, three, joined, three, "1,2,3,4\n"][..], 3),
+        // The first row may be two, whatever it has.
+        (&[joined, three, three, joined], 2),
+        (&[six, six, "1,2,3,4,5,61,2,3,4,5,6\n", six], 2),
+        (&["1,2,3,\n", "1,2,3,\n", "1,2,3,4\n", "1,2,3,4,5\n"], 2),
+    ] {
+        let messages = read_with("ax,ay,az", &format!("\n{}", rows.concat()));
+        assert_eq!(messages.len(), wanted, "{rows:?}");
+        assert!(messages.iter().all(|m| m.accelerometer == Some([1.0, 2.0, 3.0])), "{rows:?}");
+    }
 }
 
 #[test]
