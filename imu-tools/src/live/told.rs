@@ -63,14 +63,14 @@ const WELL: Duration = Duration::from_secs(60);
 pub(super) struct Told {
     learnt: Option<String>,
     amiss: Option<String>,
-    /// When something was amiss last.
-    at: Instant,
+    /// Since when nothing is amiss, as was seen.
+    well: Option<Instant>,
     patience: Duration,
 }
 
 impl Default for Told {
     fn default() -> Self {
-        Self { learnt: None, amiss: None, at: Instant::now(), patience: WELL }
+        Self { learnt: None, amiss: None, well: None, patience: WELL }
     }
 }
 
@@ -81,9 +81,11 @@ impl Told {
             self.learnt.clone_from(&link.learnt);
             self.learnt.iter().for_each(|sentence| face.say(sentence));
         }
-        let Some(why) = &link.amiss else { return };
-        let was_well = self.at.elapsed() >= self.patience;
-        self.at = Instant::now();
+        let Some(why) = &link.amiss else {
+            self.well.get_or_insert_with(Instant::now);
+            return;
+        };
+        let was_well = self.well.take().is_some_and(|since| since.elapsed() >= self.patience);
         if was_well || link.amiss != self.amiss {
             self.amiss.clone_from(&link.amiss);
             face.say(&format!("warning: {}: {why}", link.name));
@@ -128,7 +130,11 @@ mod tests {
             told.tell(&of(amiss), &mut said);
         }
         assert_eq!(said.0, ["warning: it: a", "warning: it: b"]);
+        // However long after the last time it is looked at,
         told.patience = Duration::ZERO;
+        told.tell(&of(Some("b")), &mut said);
+        assert_eq!(said.0.len(), 2);
+        // it must have been well in between.
         told.tell(&of(None), &mut said);
         told.tell(&of(Some("b")), &mut said);
         assert_eq!(said.0[2..], ["warning: it: b"]);

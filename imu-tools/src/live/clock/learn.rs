@@ -13,6 +13,10 @@ const KNOWN: f64 = 4e-3;
 const SEEN_NS: i64 = 1_500_000_000;
 const SEEN_BURSTS: usize = 16;
 
+/// A unit of ticks that is this much longer or shorter than what it is called is another: real clocks are off by
+/// a few per cent at most, a unit that was guessed by a factor of a thousand.
+const OTHER_UNIT: f64 = 2.0;
+
 /// Fewer readings show no counter.
 const FEWEST_READINGS: usize = 4;
 
@@ -79,7 +83,7 @@ pub(super) fn from(held: &[(i64, Message)], before: Option<&Track>) -> Option<Tr
         grain,
         unit_ns,
         // A unit that was guessed and is another says nothing of how long the sensor took.
-        tick_ns: tick_ns.filter(|tick_ns| (unit_ns / tick_ns - 1.0).abs() <= KNOWN),
+        tick_ns: tick_ns.filter(|ns| unit_ns < OTHER_UNIT * ns && *ns < OTHER_UNIT * unit_ns),
         per_second,
         reading,
         offset_ns: earliest,

@@ -68,7 +68,8 @@ pub struct ClockStatus {
     pub rate_hz: f64,
     /// Its standard deviation, Hz; infinite in the first seconds.
     pub rate_sd_hz: f64,
-    /// How much faster than the host's clock the sensor's runs, in millionths; `None` without ticks.
+    /// How much faster than the host's clock the sensor's runs, in millionths; `None` without ticks,
+    /// or where they are of another unit than they say.
     pub clock_ppm: Option<f64>,
     /// How arrivals scatter about stamps: standard deviation, s.
     pub jitter_s: f64,

@@ -209,6 +209,15 @@ fn an_interval_is_by_the_host_where_the_ticks_are_of_another_unit() {
     assert!(all[3000].restart && (all[3005].interval_s - 0.01).abs() < 1e-4, "{:?}", all[3005]);
 }
 
+/// A resonator of ceramic, say: by that the sensor integrates.
+#[test]
+fn an_interval_is_the_sensors_own_however_far_off_its_clock_is() {
+    let message = |k: i64| with_ticks(k as u64 * 10_000, None);
+    let (clock, all) = taken((0..3000).map(|k| (read(k * 101 * MS / 10), message(k))));
+    assert!(all.iter().all(|taken| (taken.interval_s - 0.01).abs() < 1e-12), "{:?}", all[0]);
+    assert!((clock.status().clock_ppm.unwrap() + 9901.0).abs() < 50.0, "{:?}", clock.status());
+}
+
 /// As where MAVLink's HIGHRES_IMU comes no more and RAW_IMU takes its place: both count microseconds of one clock.
 #[test]
 fn another_stream_is_a_restart_and_its_rate_no_loss() {
