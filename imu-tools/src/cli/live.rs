@@ -193,18 +193,24 @@ impl Live {
         let live = run::Live { session, port, decode, keep, goal, save: &mut save };
         let (view, ended) = live.run(&mut *face);
         drop(face);
-        let has_samples = view.samples != [0, 0];
-        match ended {
-            Ok(Ended::Goal | Ended::Input | Ended::Quit) => self.tell(view).map(|()| None),
-            Ok(Ended::Signal(signal)) => {
+        let say = |sentence: &str| super::say(&format!("imu: {sentence}"));
+        match (ended, nothing(&view)) {
+            // Who ends it so early expects no report.
+            (Ok(Ended::Quit), Some(why)) => {
+                say(&why);
+                Ok(None)
+            }
+            (Ok(Ended::Goal | Ended::Input | Ended::Quit), _) => self.tell(view).map(|()| None),
+            (Ok(Ended::Signal(signal)), nothing) => {
                 // A terminal that was closed takes no report, and a checkpoint is written.
-                self.tell(view).unwrap_or_else(|error| super::say(&format!("imu: {error}")));
+                let told = nothing.map_or_else(|| self.tell(view), |why| Err(Error::data(why)));
+                told.unwrap_or_else(|error| say(&error.to_string()));
                 Ok(Some(signal))
             }
-            Err(error) => {
+            (Err(error), _) => {
                 // What was measured is told, whatever went wrong.
-                if has_samples && let Err(also) = self.tell(view) {
-                    super::say(&format!("imu: {also}"));
+                if view.samples != [0, 0] {
+                    self.tell(view).unwrap_or_else(|also| say(&also.to_string()));
                 }
                 Err(error)
             }
@@ -307,6 +313,16 @@ impl Live {
         }
         written
     }
+}
+
+/// Why there is nothing to report, if so.
+fn nothing(view: &View) -> Option<String> {
+    let View { samples, link, snapshot, .. } = view;
+    if *samples != [0, 0] {
+        return snapshot.refusal.as_ref().map(ToString::to_string);
+    }
+    let none = || format!("no sample of {} came", link.name);
+    Some(link.amiss.clone().unwrap_or_else(none))
 }
 
 /// The first name that is free: `night.bag`, `night-2.bag`, …

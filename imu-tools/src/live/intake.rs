@@ -237,9 +237,7 @@ fn fruitless(name: &str, protocol: Protocol, bytes: u64) -> Error {
 /// What no protocol explains.
 fn unknown(name: &str, bytes: &[u8]) -> Error {
     if bytes.is_empty() {
-        return Error::data(format!(
-            "{name} ended without a byte: see that something is sent to it"
-        ));
+        return Error::data(format!("not a byte came of {name}: see that something is sent to it"));
     }
     let share = candidates(bytes).first().map_or(0.0, |best| best.accepted);
     Error::data(format!(

@@ -93,7 +93,7 @@ pub struct Live<'a> {
 impl Live<'_> {
     /// Runs until an end; the last view, and why it ended, or what went wrong: the port, or something that
     /// could not be written. Whatever ends it, checkpoint and recordings are complete. What the user ended
-    /// has ended so, whatever the port would have come to.
+    /// has ended so, whatever the port would have come to; what was wrong with it is in the view.
     pub fn run(mut self, face: &mut dyn Face) -> (View, Result<Ended, Error>) {
         let mut link = Link { name: self.port.name.clone(), ..Link::default() };
         let mut told = Told::default();
@@ -105,12 +105,14 @@ impl Live<'_> {
         let mut steps = Vec::new();
         let last = self.decode.as_mut().map_or(Ok(()), |decode| decode.finish(&mut steps));
         self.proceed(steps);
+        let amiss = last.as_ref().err().filter(|_| is_stopped).map(ToString::to_string);
         let ended =
             followed.and_then(|ended| if is_stopped { Ok(ended) } else { last.map(|()| ended) });
         if let Some(decode) = &self.decode {
             decode.tell(&mut link);
         }
         told.tell(&link, face);
+        link.amiss = amiss.or(link.amiss);
         let over = matches!(ended, Ok(Ended::Goal | Ended::Input | Ended::Quit));
         let kept = self.keep.checkpoint(&self.session, over);
         let closed = self.keep.close();

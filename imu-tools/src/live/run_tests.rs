@@ -284,6 +284,7 @@ fn what_the_user_ends_has_ended_so_though_its_protocol_is_unknown() {
         let lines = std::iter::once("who knows\n".to_owned());
         let (view, ended, _) = press(lines, Keep::default(), &mut |_| Ok(None), vec![key]);
         assert_eq!((view.link.refused, ended.unwrap()), (10, how));
+        assert_eq!(view.link.amiss.as_deref(), Some("of no known protocol"));
     }
 }
 

@@ -336,13 +336,43 @@ fn what_holds_no_sample_leaves_no_checkpoint() {
 }
 
 /// Ends a session as Ctrl-C does, and takes its report.
-#[cfg(target_os = "linux")]
+#[cfg(unix)]
 fn interrupt(child: Child) -> imu_tests::command::Said {
     let pid = child.id().to_string();
     assert!(
         std::process::Command::new("kill").args(["-s", "INT", &pid]).status().unwrap().success()
     );
     said(&child.wait_with_output().unwrap())
+}
+
+/// It is not an error of who ends it that nobody knows the protocol yet, and what did come is said.
+#[cfg(unix)]
+#[test]
+fn a_signal_before_the_protocol_is_known_says_what_came() {
+    use std::io::{BufRead as _, BufReader, Write as _};
+    let folder = tempfile::tempdir().unwrap();
+    let checkpoint = folder.path().join("c");
+    for (bytes, wanted) in [
+        ("who knows", "what the pipe sends is of no known protocol"),
+        ("", "not a byte came of the pipe"),
+    ] {
+        let mut child = imu()
+            .args(["live", "-", "--json", "--every", "10ms", "--checkpoint", text(&checkpoint)])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut to = child.stdin.take().unwrap();
+        to.write_all(bytes.as_bytes()).unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let came = format!("\"bytes\":{}", bytes.len());
+        while !lines.next().unwrap().unwrap().contains(&came) {}
+        let ended = interrupt(child);
+        assert_eq!(ended.code, 130, "{}", ended.err);
+        assert!(ended.err.contains(wanted) && !ended.err.contains("usable"), "{}", ended.err);
+        drop(to);
+    }
 }
 
 #[cfg(target_os = "linux")]

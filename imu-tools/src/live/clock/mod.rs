@@ -56,8 +56,8 @@ pub struct Taken {
     pub lost: u64,
     /// Whether a counter said so, or the arrivals.
     pub certain: bool,
-    /// Nothing connects this message with those before: the sensor or its counter began anew, or the
-    /// port was opened again.
+    /// Nothing connects this message with those before: the sensor or its counter began anew, the
+    /// port was opened again, or it is of another stream.
     pub restart: bool,
 }
 
@@ -96,6 +96,10 @@ pub struct Clock {
     lost: u64,
     /// Some of the losses are not certain.
     guessed: bool,
+    /// Which of its sender's streams the latest message was of.
+    stream: u8,
+    /// The next stretch is of another stream than the one before.
+    turned: bool,
     restarts: u64,
     arrivals: Spread,
 }
@@ -119,13 +123,17 @@ impl Spread {
 
 impl Clock {
     /// Takes a message whose last byte was in the chunk that was read at `arrival_ns` of a monotonic
-    /// clock. Hands on every message whose time is known by now, in order.
+    /// clock. Hands on every message whose time is known by now, in order; fewer than 16 that were the very first
+    /// are left out where another stream takes their place.
     pub fn take(
         &mut self,
         arrival_ns: i64,
         message: &Message,
         mut to: impl FnMut(&Message, Taken),
     ) {
+        if message.stream != self.stream {
+            self.turn(message.stream, &mut to);
+        }
         if let Some(track) = &mut self.track {
             match track.next(arrival_ns, message) {
                 Some(next) => return self.stamp(arrival_ns, message, next, &mut to),
@@ -142,6 +150,16 @@ impl Clock {
         if enough || self.held.len() >= MOST_HELD {
             self.release(&mut to);
         }
+    }
+
+    /// Begins with another stream, whose times are not those of the one before.
+    fn turn(&mut self, stream: u8, to: &mut impl FnMut(&Message, Taken)) {
+        // Where a sender's better stream begins a moment after another, the few messages of that are left out.
+        if self.last_stamp.is_none() && self.held.len() < LEAST_HELD {
+            self.held.clear();
+        }
+        self.release(to);
+        (self.track, self.before, self.stream, self.turned) = (None, None, stream, true);
     }
 
     /// Hands on what is held back. The next message continues where these end.
@@ -219,15 +237,17 @@ impl Clock {
     }
 
     /// Lets stamps go on: a stretch that would begin before the end of the last is moved.
-    fn join(&self, track: &mut Track) -> Next {
+    fn join(&mut self, track: &mut Track) -> Next {
         let first = Next { units: 0, lost: 0, certain: true, restart: false };
+        let turned = std::mem::take(&mut self.turned);
         let Some(last) = self.last_stamp else { return first };
         let period = track.period_ns();
         let gap = track.stamp().saturating_sub(last) as f64;
         if gap < 1.0 {
             track.shift(period - gap);
         }
-        let lost = ((gap / period).round() as u64).saturating_sub(1);
+        // The end of one stream and the beginning of another tell of no losses.
+        let lost = if turned { 0 } else { ((gap / period).round() as u64).saturating_sub(1) };
         Next { lost, certain: false, restart: true, ..first }
     }
 

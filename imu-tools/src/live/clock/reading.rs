@@ -21,8 +21,6 @@ pub(super) struct Reading {
     pub wraps_at: Option<u64>,
     /// Of ticks: how many make a second. A sender of several messages may count in several units.
     pub per_second: Option<u64>,
-    /// The stream that it is of.
-    pub stream: u8,
 }
 
 impl Reading {
@@ -33,22 +31,20 @@ impl Reading {
                 value: t.value,
                 wraps_at: t.wraps_at.filter(|w| *w > 0),
                 per_second: Some(t.per_second),
-                stream: message.stream,
             }),
             Source::Count => message.count.map(|c| Self {
                 value: u64::from(c.value),
                 wraps_at: Some(c.wraps_at).filter(|w| *w > 0),
                 per_second: None,
-                stream: message.stream,
             }),
             Source::Arrival => None,
         }
     }
 
     /// Units from `before` to this, fewer than the counter counts to before it wraps; `None` where it
-    /// went back and never wraps, counts in another unit, or is of another stream.
+    /// went back and never wraps, or counts in another unit.
     pub fn since(self, before: Self) -> Option<u64> {
-        if (self.per_second, self.stream) != (before.per_second, before.stream) {
+        if self.per_second != before.per_second {
             return None;
         }
         match self.wraps_at {
@@ -68,14 +64,13 @@ mod tests {
 
     #[test]
     fn counters_wrap_or_go_back() {
-        let at = |value, wraps_at| Reading { value, wraps_at, per_second: None, stream: 0 };
+        let at = |value, wraps_at| Reading { value, wraps_at, per_second: None };
         assert_eq!(at(3, Some(256)).since(at(250, Some(256))), Some(9));
         assert_eq!(at(250, Some(256)).since(at(250, Some(256))), Some(0));
         assert_eq!(at(3, None).since(at(250, None)), None);
         assert_eq!(at(u64::MAX, None).since(at(0, None)), Some(u64::MAX));
         let micros = Reading { per_second: Some(1_000_000), ..at(5, None) };
         assert_eq!(micros.since(Reading { per_second: Some(1000), ..micros }), None);
-        assert_eq!(micros.since(Reading { stream: 1, ..micros }), None);
         let all = Some(u64::MAX);
         assert_eq!(at(5, all).since(at(u64::MAX - 1, all)), Some(6));
     }

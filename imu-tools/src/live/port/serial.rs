@@ -23,7 +23,7 @@ const TRIAL: Duration = Duration::from_millis(700);
 /// anew when their port is opened, behind a boot loader of two seconds.
 const BOOT: Duration = Duration::from_secs(4);
 
-/// How often all are tried.
+/// How often all are tried, where anything comes: while they are tried first, a board may still be in its loader.
 const ROUNDS: usize = 2;
 
 /// Bytes that are enough to judge a rate.
@@ -164,13 +164,12 @@ fn lock(_: &SerialPort) -> io::Result<()> {
 }
 
 /// The first rate at which most of the bytes are part of frames, and the port at that rate: it is opened once,
-/// because many a board starts anew whenever its port is opened. What came with pauses may have been such a
-/// board's beginning: the rates are then gone through once more.
+/// because many a board starts anew whenever its port is opened.
 fn find_rate(path: &Path, expected: &Expected<'_>) -> Result<(SerialPort, u32), Error> {
     let mut port = claim(path).map_err(|e| refusal(path, &e))?;
-    let (mut most, mut patience, mut paused) = (Vec::new(), BOOT, false);
+    let (mut most, mut patience) = (Vec::new(), BOOT);
     for (round, rate) in (0..ROUNDS).flat_map(|round| RATES.map(|rate| (round, rate))) {
-        if round > 0 && (most.is_empty() || !paused) {
+        if round > 0 && most.is_empty() {
             break;
         }
         match tune(&mut port, rate) {
@@ -182,12 +181,14 @@ fn find_rate(path: &Path, expected: &Expected<'_>) -> Result<(SerialPort, u32), 
             Err(e) => return Err(refusal(path, &e)),
         }
         let heard = listen(&port, std::mem::replace(&mut patience, TRIAL), expected.refused);
-        if (expected.refused)(&heard.bytes).is_some_and(|share| share < TOO_MANY) {
+        // The first half may be what a loader says.
+        let halves = [heard.as_slice(), heard.get(heard.len() / 2..).unwrap_or_default()];
+        let is_right = |bytes| (expected.refused)(bytes).is_some_and(|share| share < TOO_MANY);
+        if halves.into_iter().any(is_right) {
             return Ok((port, rate));
         }
-        paused |= heard.paused;
-        if heard.bytes.len() > most.len() {
-            most = heard.bytes;
+        if heard.len() > most.len() {
+            most = heard;
         }
     }
     let name = path.display();
@@ -207,31 +208,27 @@ fn find_rate(path: &Path, expected: &Expected<'_>) -> Result<(SerialPort, u32), 
     )))
 }
 
-/// What came at one rate.
-#[derive(Default)]
-struct Heard {
-    bytes: Vec<u8>,
-    /// For a while nothing did.
-    paused: bool,
-}
-
 /// What comes in a short time, once it is as much as can be judged.
-fn listen(port: &SerialPort, patience: Duration, refused: &dyn Fn(&[u8]) -> Option<f64>) -> Heard {
-    let (mut heard, mut buffer) = (Heard::default(), [0; PIECE]);
+fn listen(
+    port: &SerialPort,
+    patience: Duration,
+    refused: &dyn Fn(&[u8]) -> Option<f64>,
+) -> Vec<u8> {
+    let (mut heard, mut buffer) = (Vec::new(), [0; PIECE]);
     let (mut end, mut is_judged) = (Instant::now() + patience, false);
-    while Instant::now() < end && heard.bytes.len() < ENOUGH {
+    while Instant::now() < end && heard.len() < ENOUGH {
         match port.read(&mut buffer) {
             Ok(0) => break,
             Ok(n) => {
-                if heard.bytes.is_empty() {
+                if heard.is_empty() {
                     end = end.max(Instant::now() + TRIAL);
                 }
-                heard.bytes.extend_from_slice(buffer.get(..n).unwrap_or_default());
-                if !is_judged && refused(&heard.bytes).is_some() {
+                heard.extend_from_slice(buffer.get(..n).unwrap_or_default());
+                if !is_judged && refused(&heard).is_some() {
                     (end, is_judged) = (Instant::now() + TRIAL, true);
                 }
             }
-            Err(e) if e.kind() == io::ErrorKind::TimedOut => heard.paused = true,
+            Err(e) if e.kind() == io::ErrorKind::TimedOut => {}
             Err(_) => break,
         }
     }
@@ -336,6 +333,14 @@ mod tests {
             let rate = rate_of_board(banner.as_bytes(), Duration::from_millis(1500));
             assert_eq!(rate.unwrap(), RATES[0], "{banner:?}");
         }
+    }
+
+    /// The stream follows at once what the loader says, which is nearly half of all that is listened to.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_board_that_speaks_before_its_stream_is_heard_at_once() {
+        let words = [b'x'; ENOUGH * 9 / 20];
+        assert_eq!(rate_of_board(&words, Duration::ZERO).unwrap(), RATES[0]);
     }
 
     /// What its loader says is of no protocol, and then all rates are tried before it sends.

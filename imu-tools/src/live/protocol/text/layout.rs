@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::Pointed;
+use super::width::Width;
 use crate::recording::csv::celsius::Celsius;
 use crate::recording::csv::columns::{Column, Columns};
 use crate::recording::csv::dialect::Dialect;
@@ -13,10 +14,9 @@ use crate::recording::{ForceUnit, RateUnit, ReadOptions, TimeUnit};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     columns: Vec<Column>,
-    /// Fields of a row: a header told them all, or two rows that followed each other agreed.
-    width: Option<usize>,
-    /// What the latest row showed, or, once the width is known, that by which it was.
-    seen: Option<Seen>,
+    width: Width,
+    /// How the first row is written.
+    dialect: Option<Dialect>,
     /// Unit of time, where it is told.
     pub time: Option<TimeUnit>,
     rate: RateUnit,
@@ -26,13 +26,6 @@ pub struct Layout {
     pub increments: bool,
     /// Units that nobody told.
     granted: bool,
-}
-
-/// What a row shows, written as the first one was.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Seen {
-    dialect: Dialect,
-    fields: usize,
 }
 
 /// A line's numbers.
@@ -78,12 +71,12 @@ impl Layout {
             None => Columns::live_from_names(&names),
         };
         let layout = Self::new(columns.ok()?, options).ok()?;
-        Some(Self { width: Some(names.len().max(layout.columns.len())), ..layout })
+        Some(Self { width: Width::told(names.len().max(layout.columns.len())), ..layout })
     }
 
     /// Whether a header told the same; a layout that has seen rows knows more.
     pub fn tells_as(&self, other: &Self) -> bool {
-        let told = |layout: &Self| Self { seen: None, ..layout.clone() };
+        let told = |layout: &Self| Self { dialect: None, ..layout.clone() };
         told(self) == told(other)
     }
 
@@ -101,8 +94,8 @@ impl Layout {
         let granted =
             rate.is_none() && has(Column::Rate(0)) || force.is_none() && has(Column::Force(0));
         Ok(Self {
-            seen: None,
-            width: None,
+            dialect: None,
+            width: Width::at_least(found.columns.len()),
             time,
             rate: rate.unwrap_or(RateUnit::RadPerS),
             force: force.unwrap_or(ForceUnit::MPerS2),
@@ -114,22 +107,15 @@ impl Layout {
     }
 
     /// Learns from a row; whether it can be read: one that has more fields than were told may be two, of which
-    /// the end of one and the line end between them were lost, until the next row has as many.
+    /// the end of one and the line end between them were lost, until others have as many.
     pub fn see(&mut self, row: &[u8]) -> bool {
-        if self.width.is_none() || self.seen.is_none() {
-            let dialect = self.seen.map_or_else(|| Dialect::of(row), |seen| seen.dialect);
-            let fields = dialect.fields(row).count();
-            let agreed = self.seen.is_some_and(|seen| seen.fields == fields);
-            self.width = self.width.or(agreed.then_some(fields));
-            self.seen = Some(Seen { dialect, fields });
-        }
-        let fields = self.seen.map_or(0, |seen| seen.fields);
-        self.width.is_some() || fields <= self.columns.len()
+        let dialect = *self.dialect.get_or_insert_with(|| Dialect::of(row));
+        self.width.known().is_some() || self.width.see(dialect.fields(row).count())
     }
 
     /// The numbers of a line; `None` where it lacks some, or one is none.
     pub fn row<'a>(&self, line: &'a [u8]) -> Option<Row<'a>> {
-        let dialect = self.seen.map_or_else(|| Dialect::of(line), |seen| seen.dialect);
+        let dialect = self.dialect.unwrap_or_else(|| Dialect::of(line));
         let (mut rate, mut force) = (Triple::default(), Triple::default());
         let (mut seconds, mut nanoseconds, mut units, mut celsius) = (None, None, None, None);
         let mut fields = dialect.fields(line);
@@ -150,7 +136,7 @@ impl Layout {
             }
         }
         // Two lines, the line end between them lost.
-        let more = self.width.map(|width| width.saturating_sub(self.columns.len()));
+        let more = self.width.known().map(|width| width.saturating_sub(self.columns.len()));
         if more.is_some_and(|more| fields.skip(more).any(|field| !field.is_empty())) {
             return None;
         }

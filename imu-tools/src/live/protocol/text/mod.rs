@@ -13,6 +13,7 @@
 
 mod layout;
 mod time;
+mod width;
 
 use crate::error::Error;
 use crate::live::{Kind, Message};

@@ -60,7 +60,7 @@ fn columns_are_told_or_customary_or_unknown() {
 }
 
 #[test]
-fn a_row_may_have_more_fields_than_were_told_as_many_as_two_that_follow_each_other() {
+fn a_row_may_have_more_fields_than_were_told_as_many_as_others_have() {
     let (three, joined) = ("1,2,3\n", "1,2,31,2,3\n");
     let six = "1,2,3,4,5,6\n";
     for (rows, wanted) in [
@@ -69,6 +69,9 @@ fn a_row_may_have_more_fields_than_were_told_as_many_as_two_that_follow_each_oth
         (&[joined, three, three, joined], 2),
         (&[six, six, "1,2,3,4,5,61,2,3,4,5,6\n", six], 2),
         (&["1,2,3,\n", "1,2,3,\n", "1,2,3,4\n", "1,2,3,4,5\n"], 2),
+        // Fields that come at times only, in turn even.
+        (&[three, three, three, six].repeat(16), 64 - 7),
+        (&["1,2,3,4\n", "1,2,3,4,5\n"].repeat(40), 80 - 14),
     ] {
         let messages = read_with("ax,ay,az", &format!("\n{}", rows.concat()));
         assert_eq!(messages.len(), wanted, "{rows:?}");
