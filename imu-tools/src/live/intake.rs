@@ -135,8 +135,7 @@ impl Decode for Intake {
                 decode(decoder, &mut self.clock, arrival_ns, bytes, to);
                 self.stretch.look(decoder.tally());
                 let (name, protocol) = (&self.name, decoder.protocol());
-                match self.stretch.amiss() {
-                    Some(_) if self.stretch.had_samples() => Ok(()),
+                match self.stretch.amiss().filter(|_| self.stretch.is_hopeless()) {
                     Some(Amiss::Refused(share)) => Err(Error::data(format!(
                         "{:.0} % of the bytes of {name} are no {protocol}: the baud rate is wrong (see \
                          --baud), or the protocol is (see --protocol); the latest bytes are {}",
@@ -178,18 +177,19 @@ impl Decode for Intake {
         link.learnt = decoder.learnt().map(str::to_owned);
         (link.bytes, link.refused) = (tally.bytes, tally.refused);
         (link.bad_checksums, link.messages) = (tally.damaged, tally.messages);
-        // Where no sample came before, the session ends of it.
-        let amiss = self.stretch.amiss().filter(|_| self.stretch.had_samples());
+        // What ends the session is told by that.
+        let amiss = self.stretch.amiss().filter(|_| !self.stretch.is_hopeless());
         link.amiss = amiss.map(|amiss| {
             let protocol = decoder.protocol();
             match amiss {
                 Amiss::Refused(_) => format!(
                     "hardly any byte is {protocol} any more: has the sensor another baud rate now?"
                 ),
+                Amiss::Fruitless(_) if self.stretch.had_samples() => format!(
+                    "{protocol} comes, and in it no sample any more: what is it set to send?"
+                ),
                 Amiss::Fruitless(_) => {
-                    format!(
-                        "{protocol} comes, and in it no sample any more: what is it set to send?"
-                    )
+                    format!("{protocol} comes, and in it no sample yet: {}", way_out(protocol))
                 }
             }
         });
@@ -225,13 +225,18 @@ fn decoder(protocol: Protocol, options: &ReadOptions) -> Result<Decoder, Error> 
 
 /// Whole frames, none of a sensor.
 fn fruitless(name: &str, protocol: Protocol, bytes: u64) -> Error {
-    let way_out = match protocol {
+    Error::data(format!(
+        "{name} sends {protocol}, and none of {bytes} bytes tells what a sensor measured: {}",
+        way_out(protocol)
+    ))
+}
+
+/// What to do about that.
+fn way_out(protocol: Protocol) -> &'static str {
+    match protocol {
         Protocol::Text => "say what the columns are, such as --columns t,gx,gy,gz,ax,ay,az",
         _ => "set the device to send its angular rates and accelerations",
-    };
-    Error::data(format!(
-        "{name} sends {protocol}, and none of {bytes} bytes tells what a sensor measured: {way_out}"
-    ))
+    }
 }
 
 /// What no protocol explains.

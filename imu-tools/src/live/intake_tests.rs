@@ -214,6 +214,15 @@ fn what_a_hang_up_cut_is_not_joined_to_what_comes_behind_it() {
 fn lines_of_which_nobody_says_what_they_are_end_with_the_way_out() {
     let lines = b"\n1,2,3,4,5,6\n".repeat(6000);
     let mut intake = Intake::new("tty", None, &ReadOptions::default()).unwrap();
+    // It is told of soon.
+    let (first, lines) = lines.split_at(8192);
+    for piece in first.chunks(4096) {
+        intake.feed(0, piece, &mut Vec::new()).unwrap();
+    }
+    let mut link = Link::default();
+    intake.tell(&mut link);
+    let amiss = link.amiss.unwrap();
+    assert!(amiss.starts_with("text comes, and in it no sample yet: say"), "{amiss}");
     let mut fed = lines.chunks(4096).map(|piece| intake.feed(0, piece, &mut Vec::new()));
     let error = fed.find_map(Result::err).unwrap().to_string();
     assert!(

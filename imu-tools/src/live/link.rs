@@ -13,7 +13,7 @@ pub struct Link {
     pub gone: Option<String>,
     /// The port is there, and for so long nothing came, s.
     pub silent_s: Option<f64>,
-    /// What is wrong with what comes now, though samples came before; at the end also, what would have been.
+    /// What is wrong with what comes now, though it goes on; at the end also, what nobody could make out of it.
     pub amiss: Option<String>,
     /// Bytes that came.
     pub bytes: u64,

@@ -13,8 +13,10 @@ const TOO_MANY: f64 = 0.95;
 /// So many messages are no chance: a sensor sent them.
 const FEWEST: u64 = 8;
 
-/// So many bytes without a sample are of a device that sends none.
+/// So many bytes without a sample are of a device that sends none any more; fewer before the first show it, but
+/// that end may be worth waiting for.
 const FRUITLESS: u64 = 65_536;
+const FRUITLESS_SO_FAR: u64 = 4096;
 
 /// What is wrong with bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +54,9 @@ impl Stretch {
             self.began = tally;
         }
         let fruitless = tally.bytes.saturating_sub(self.sampled.bytes);
-        if self.amiss.is_none() && fruitless > FRUITLESS {
+        let is_new = self.sampled.messages == 0;
+        let is_refused = matches!(self.amiss, Some(Amiss::Refused(_)));
+        if !is_refused && fruitless > if is_new { FRUITLESS_SO_FAR } else { FRUITLESS } {
             self.amiss = Some(Amiss::Fruitless(fruitless));
         }
     }
@@ -60,6 +64,16 @@ impl Stretch {
     /// What is wrong now.
     pub fn amiss(&self) -> Option<Amiss> {
         self.amiss
+    }
+
+    /// Whether that is the end of a session: no sensor was heard, and none will be.
+    pub fn is_hopeless(&self) -> bool {
+        !self.had_samples()
+            && match self.amiss {
+                Some(Amiss::Refused(_)) => true,
+                Some(Amiss::Fruitless(bytes)) => bytes > FRUITLESS,
+                None => false,
+            }
     }
 
     /// Whether a sensor was heard before.
@@ -112,25 +126,29 @@ mod tests {
             stretch.look(more(&mut tally, 64 * messages, 0, messages));
             stretch.look(more(&mut tally, STRETCH, STRETCH, 0));
             assert!(matches!(stretch.amiss(), Some(Amiss::Refused(_))), "{messages}");
-            assert_eq!(stretch.had_samples(), was_heard);
+            assert_eq!((stretch.had_samples(), stretch.is_hopeless()), (was_heard, !was_heard));
         }
     }
 
     #[test]
     fn frames_without_a_sample_are_told_of_until_one_comes() {
         let (mut stretch, mut tally) = (Stretch::default(), Tally::default());
+        stretch.look(more(&mut tally, 4096, 0, 0));
+        assert_eq!(stretch.amiss(), None);
+        for number in 2..=16 {
+            stretch.look(more(&mut tally, 4096, 0, 0));
+            assert_eq!(stretch.amiss(), Some(Amiss::Fruitless(4096 * number)));
+            assert!(!stretch.is_hopeless());
+        }
+        stretch.look(more(&mut tally, 1, 0, 0));
+        assert!(stretch.is_hopeless());
+        stretch.look(more(&mut tally, 40_000, 0, FEWEST));
+        assert_eq!(stretch.amiss(), None);
         for _ in 0..16 {
             stretch.look(more(&mut tally, 4096, 0, 0));
             assert_eq!(stretch.amiss(), None);
         }
-        stretch.look(more(&mut tally, 1, 0, 0));
-        assert_eq!(stretch.amiss(), Some(Amiss::Fruitless(65_537)));
-        assert!(!stretch.had_samples());
-        stretch.look(more(&mut tally, 40_000, 0, FEWEST));
-        assert_eq!(stretch.amiss(), None);
-        for _ in 0..20 {
-            stretch.look(more(&mut tally, 4096, 0, 0));
-        }
-        assert!(matches!(stretch.amiss(), Some(Amiss::Fruitless(_))) && stretch.had_samples());
+        stretch.look(more(&mut tally, 4096, 0, 0));
+        assert!(matches!(stretch.amiss(), Some(Amiss::Fruitless(_))) && !stretch.is_hopeless());
     }
 }
